@@ -1,0 +1,16 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace kerf {
+
+/// Replaces `file` by `content` in one step (temporary file beside it, fsync, rename): a reader sees the old or the new
+/// content, never a part. Creates missing parent folders. Throws InputError when the place cannot be written.
+void write_atomically(const std::filesystem::path& file, std::string_view content);
+
+/// SHA-256 as 64 lower-case hexadecimal digits.
+std::string sha256(std::string_view content);
+
+}  // namespace kerf
