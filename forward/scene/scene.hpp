@@ -1,48 +1,51 @@
 #pragma once
 
+#include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "models/base/document.hpp"
+#include "models/laws/j2.hpp"
+#include "models/laws/traction_law.hpp"
 
 namespace kerf::forward {
 
 /// A cut, as plain data in consistent units (mm, MPa, N, tonne, s, rad). An effect that a scene may leave out is an
 /// optional block; absence is the only way to switch it off.
-struct Material {
-  double elastic_modulus, poisson_ratio, density;
-  double yield_stress, hardening_modulus;
-};
-
-struct CohesiveMode {
-  double strength, toughness;
-};
 
 struct Cohesive {
-  CohesiveMode mode_I, mode_II;
-  double exponent_n, exponent_m;  ///< (G_I/G_Ic)^n + (G_II/G_IIc)^m = 1 at failure
+  std::shared_ptr<const laws::TractionLaw> mode_I, mode_II;
+  double exponent_n, exponent_m;  ///< failure at (G_I/G_Ic)^n + (G_II/G_IIc)^m = 1
 };
 
 struct Cut {
-  double depth;
-  double speed;
-  double ramp;    ///< the tool reaches its speed after this time
-  double notch;   ///< length already cut when the tool arrives
-  double length;  ///< the longest tool travel
+  double depth;   ///< h: thickness of the layer above the crack plane
+  double speed;   ///< of the tool, +x
+  double ramp;    ///< time in which the tool reaches its speed
+  double notch;   ///< length already separated when the tool arrives, in depths
+  double travel;  ///< longest tool travel, in depths
 };
 
 struct Tool {
-  double rake;
-  double friction;   ///< Coulomb coefficient of the rake face
-  double shear_cap;  ///< friction never exceeds shear_cap * shear yield stress
+  double rake;  ///< alpha, from the crack plane's normal
 };
 
-/// The clearance side pressed against the freshly cut face, its height tied to that face.
-struct BottomContact {
-  double press_in, edge_radius, clearance, friction;
+/// Coulomb friction on the rake face, tau = min(mu p, cap sigma_y/sqrt(3)).
+struct Friction {
+  double coefficient;
+  double yield_cap;
 };
 
-/// FLIP blended towards PIC, as a rate in units of wave transits of a cell: beta = 1 - exp(-rate * CFL) each step.
+/// The clearance side pressed into the freshly cut face, its height tied to that face (a worn edge).
+struct EdgeContact {
+  double press_in;     ///< delta: how far the edge sits below the face that comes towards it
+  double edge_radius;  ///< R_L of the lower edge
+  double clearance;    ///< angle between clearance face and crack plane
+  double friction;     ///< Coulomb coefficient there
+};
+
+/// FLIP blended towards PIC at a rate in cell transits of the elastic wave: beta = 1 - exp(-rate CFL) each step.
 struct PicDamping {
   double rate;
 };
@@ -58,21 +61,24 @@ struct Resolution {
 };
 
 struct SteadyState {
-  double tolerance;  ///< relative standard error of F_c at which the cut may stop
-  double shortest;   ///< tool travel, in depths of cut, before which it never stops
+  double tolerance;   ///< relative standard error of F_c at which the cut may stop
+  double not_before;  ///< tool travel, in depths, before which it never stops
 };
 
 struct Scene {
   std::string title;
-  Material material;
+  laws::J2 material;
   Cohesive cohesive;
   Cut cut;
   Tool tool;
-  std::optional<BottomContact> bottom_contact;
+  std::optional<Friction> friction;
+  std::optional<EdgeContact> edge_contact;
   std::optional<PicDamping> pic_damping;
   Window window;
   Resolution resolution;
   SteadyState steady_state;
+
+  double cell() const { return cut.depth / resolution.cells_through_chip; }
 };
 
 /// Every block a scene may hold, with its parameters; what `kerf list`, `kerf check` and calibrations read.

@@ -48,7 +48,8 @@ struct Block {
   std::string variant;  ///< value of `law` that selects this block; "" when the block has no variants
   std::string meaning;
   std::vector<Parameter> parameters;
-  bool required = false;
+  bool required =
+      false;  ///< always there: when a file leaves it out, its keys take their fallbacks (error if one has none)
   bool repeated = false;  ///< written as [[path]], any number of times
 };
 
