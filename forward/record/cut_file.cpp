@@ -1,0 +1,292 @@
+#include "forward/record/cut_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <hdf5.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <mutex>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "forward/record/result_json.hpp"
+#include "models/base/atomic_file.hpp"
+#include "models/base/error.hpp"
+
+namespace kerf::forward {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Anything HDF5 refuses; becomes an InputError that names the file.
+struct Failure {
+  std::string what;
+};
+
+/// One HDF5 identifier, closed when it goes out of scope.
+class Handle {
+ public:
+  using Close = herr_t (*)(hid_t);
+  Handle(hid_t id, Close close, const char* what) : id_(id), close_(close) {
+    if (id_ < 0) throw Failure{what};
+  }
+  Handle(const Handle&) = delete;
+  Handle& operator=(const Handle&) = delete;
+  ~Handle() { close_(id_); }
+  operator hid_t() const { return id_; }
+
+ private:
+  hid_t id_;
+  Close close_;
+};
+
+void check(herr_t status, const char* what) {
+  if (status < 0) throw Failure{what};
+}
+
+/// HDF5 prints its error stack by default; we report one line of our own instead.
+class QuietErrors {
+ public:
+  QuietErrors() {
+    H5Eget_auto2(H5E_DEFAULT, &print_, &data_);
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  }
+  QuietErrors(const QuietErrors&) = delete;
+  QuietErrors& operator=(const QuietErrors&) = delete;
+  ~QuietErrors() { H5Eset_auto2(H5E_DEFAULT, print_, data_); }
+
+ private:
+  H5E_auto2_t print_ = nullptr;
+  void* data_ = nullptr;
+};
+
+/// A column of numbers with its unit: `rows` entries of `components` each, row by row.
+struct Field {
+  const char* name;
+  const char* unit;
+  hsize_t components;
+  std::vector<double> values;
+  hsize_t rows() const { return values.size() / components; }
+};
+
+std::vector<double> interlaced(std::initializer_list<const std::vector<double>*> columns, std::size_t components) {
+  std::vector<double> rows((*columns.begin())->size() * components, 0.0);
+  std::size_t component = 0;
+  for (const std::vector<double>* column : columns) {
+    for (std::size_t i = 0; i < column->size(); ++i) rows[i * components + component] = (*column)[i];
+    ++component;
+  }
+  return rows;
+}
+
+std::vector<Field> particle_fields(const Snapshot& s) {
+  return {{"position", "mm", 2, interlaced({&s.x, &s.y}, 2)},
+          {"velocity", "mm/s", 3, interlaced({&s.velocity_x, &s.velocity_y}, 3)},
+          {"equivalent_stress", "MPa", 1, s.equivalent_stress},
+          {"pressure", "MPa", 1, s.pressure},
+          {"plastic_strain", "1", 1, s.plastic_strain},
+          {"side", "1", 1, {s.side.begin(), s.side.end()}}};
+}
+
+std::vector<Field> face_fields(const Snapshot& s) {
+  return {{"upper", "mm", 2, interlaced({&s.upper_face_x, &s.upper_face_y}, 2)},
+          {"lower", "mm", 2, interlaced({&s.lower_face_x, &s.lower_face_y}, 2)}};
+}
+
+template <class Owner>
+struct Column {
+  const char* name;
+  const char* unit;
+  double Owner::*value;
+};
+
+constexpr std::array<Column<ForceSample>, 8> history_columns{
+    {{"travel", "mm", &ForceSample::travel},
+     {"F_c", "N/mm", &ForceSample::F_c},
+     {"F_t", "N/mm", &ForceSample::F_t},
+     {"rake_normal", "N/mm", &ForceSample::rake_normal},
+     {"rake_tangential", "N/mm", &ForceSample::rake_tangential},
+     {"bottom_normal", "N/mm", &ForceSample::bottom_normal},
+     {"bottom_tangential", "N/mm", &ForceSample::bottom_tangential},
+     {"crack_lead", "mm", &ForceSample::crack_lead}}};
+
+constexpr const char* energy_unit = "N mm/mm";
+constexpr std::array<Column<Ledger>, 7> ledger_columns{{{"tool_work", energy_unit, &Ledger::tool_work},
+                                                        {"fracture", energy_unit, &Ledger::fracture},
+                                                        {"plastic", energy_unit, &Ledger::plastic},
+                                                        {"elastic", energy_unit, &Ledger::elastic},
+                                                        {"kinetic", energy_unit, &Ledger::kinetic},
+                                                        {"friction", energy_unit, &Ledger::friction},
+                                                        {"damping", energy_unit, &Ledger::damping}}};
+
+template <class Value>
+std::vector<double> over_history(const std::vector<ForceSample>& history, Value value) {
+  std::vector<double> column(history.size());
+  std::transform(history.begin(), history.end(), column.begin(), value);
+  return column;
+}
+
+std::vector<Field> history_fields(const std::vector<ForceSample>& history) {
+  std::vector<Field> fields;
+  for (const auto& column : history_columns)
+    fields.push_back({column.name, column.unit, 1,
+                      over_history(history, [&](const ForceSample& sample) { return sample.*column.value; })});
+  return fields;
+}
+
+std::vector<Field> ledger_fields(const std::vector<ForceSample>& history) {
+  std::vector<Field> fields;
+  for (const auto& column : ledger_columns)
+    fields.push_back({column.name, column.unit, 1,
+                      over_history(history, [&](const ForceSample& sample) { return sample.ledger.*column.value; })});
+  fields.push_back({"residue", energy_unit, 1,
+                    over_history(history, [](const ForceSample& sample) { return sample.ledger.residue(); })});
+  return fields;
+}
+
+std::vector<Field> tool_fields(const Scene& scene, const Snapshot& snapshot) {
+  return {{"tip_x", "mm", 1, {snapshot.tool_tip_x}},
+          {"tip_y", "mm", 1, {snapshot.tool_tip_y}},
+          {"rake", "rad", 1, {scene.tool.rake}},
+          {"depth", "mm", 1, {scene.cut.depth}},
+          {"cell", "mm", 1, {snapshot.cell}}};
+}
+
+void write_text_attribute(hid_t owner, const char* name, const std::string& text) {
+  const Handle type(H5Tcopy(H5T_C_S1), H5Tclose, "string type");
+  check(H5Tset_size(type, H5T_VARIABLE), "string type");
+  check(H5Tset_cset(type, H5T_CSET_UTF8), "string type");
+  const Handle space(H5Screate(H5S_SCALAR), H5Sclose, "attribute space");
+  const Handle attribute(H5Acreate2(owner, name, type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose, "attribute");
+  const char* content = text.c_str();
+  check(H5Awrite(attribute, type, &content), "attribute");
+}
+
+void write_group(hid_t parent, const char* name, const std::vector<Field>& fields) {
+  const Handle group(H5Gcreate2(parent, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose, "group");
+  for (const Field& field : fields) {
+    const std::array<hsize_t, 2> extent{field.rows(), field.components};
+    const Handle space(H5Screate_simple(field.components > 1 ? 2 : 1, extent.data(), nullptr), H5Sclose, "data space");
+    const Handle set(H5Dcreate2(group, field.name, H5T_IEEE_F64LE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                     H5Dclose, "dataset");
+    if (!field.values.empty())
+      check(H5Dwrite(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, field.values.data()), "dataset");
+    write_text_attribute(set, "unit", field.unit);
+  }
+}
+
+void write_h5(const fs::path& file, const Document& document, const Scene& scene, const CutResult& result) {
+  const Handle h5(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose, "new file");
+  write_text_attribute(h5, "title", scene.title);
+  write_text_attribute(h5, "code_version", KERF_VERSION);
+  write_text_attribute(h5, "scene", document.canonical());
+  write_text_attribute(h5, "result", result_json(result).dump(2));
+  write_group(h5, "history", history_fields(result.history));
+  write_group(h5, "history/ledger", ledger_fields(result.history));
+  write_group(h5, "particles", particle_fields(result.snapshot));
+  write_group(h5, "faces", face_fields(result.snapshot));
+  write_group(h5, "tool", tool_fields(scene, result.snapshot));
+  check(H5Fflush(h5, H5F_SCOPE_GLOBAL), "flush");
+}
+
+void fsync_file(const fs::path& file) {
+  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) throw Failure{"fsync"};
+  const int status = ::fsync(descriptor);
+  ::close(descriptor);
+  if (status != 0) throw Failure{"fsync"};
+}
+
+/// Points as ParaView's Polyvertex: the first field is the position, the others are attributes.
+std::string xdmf_points(const char* grid, const std::string& group, const std::vector<Field>& fields) {
+  const auto data_item = [&](const Field& field) {
+    const std::string extent =
+        field.components > 1 ? fmt::format("{} {}", field.rows(), field.components) : fmt::format("{}", field.rows());
+    return fmt::format(R"(<DataItem Dimensions="{}" NumberType="Float" Precision="8" Format="HDF">{}/{}</DataItem>)",
+                       extent, group, field.name);
+  };
+  const Field& position = fields.front();
+  if (position.values.empty()) return {};
+  std::string xml = fmt::format(R"(      <Grid Name="{}" GridType="Uniform">
+        <Topology TopologyType="Polyvertex" NumberOfElements="{}" NodesPerElement="1"/>
+        <Geometry GeometryType="XY">{}</Geometry>
+)",
+                                grid, position.rows(), data_item(position));
+  for (auto field = fields.begin() + 1; field != fields.end(); ++field)
+    xml += fmt::format(R"(        <Attribute Name="{}" AttributeType="{}" Center="Node">{}</Attribute>
+)",
+                       field->name, field->components > 1 ? "Vector" : "Scalar", data_item(*field));
+  return xml + "      </Grid>\n";
+}
+
+std::string escaped(std::string_view text) {
+  std::string xml;
+  for (const char c : text) switch (c) {
+      case '&':
+        xml += "&amp;";
+        break;
+      case '<':
+        xml += "&lt;";
+        break;
+      case '>':
+        xml += "&gt;";
+        break;
+      case '"':
+        xml += "&quot;";
+        break;
+      default:
+        xml += c;
+    }
+  return xml;
+}
+
+std::string xdmf(const std::string& h5_name, const Snapshot& snapshot) {
+  const std::string file = escaped(h5_name) + ":";
+  const std::vector<Field> faces = face_fields(snapshot);
+  return R"(<?xml version="1.0" encoding="UTF-8"?>
+<Xdmf Version="3.0">
+  <Domain>
+    <Grid Name="cut" GridType="Collection" CollectionType="Spatial">
+)" + xdmf_points("particles", file + "/particles", particle_fields(snapshot)) +
+         xdmf_points("upper_face", file + "/faces", {faces[0]}) +
+         xdmf_points("lower_face", file + "/faces", {faces[1]}) + R"(    </Grid>
+  </Domain>
+</Xdmf>
+)";
+}
+
+}  // namespace
+
+fs::path xdmf_beside(const fs::path& h5) {
+  return fs::path(h5).replace_extension(".xdmf");
+}
+
+void write_cut(const fs::path& h5, const Document& document, const CutResult& result) {
+  // The HDF5 library is not built for threads; simulations that run side by side take turns here.
+  static std::mutex one_at_a_time;
+  const std::lock_guard lock(one_at_a_time);
+
+  const Scene scene = read_scene(document);
+  const fs::path partial = fs::path(h5) += fmt::format(".partial-{}", ::getpid());
+  std::error_code ignored;
+  try {
+    const QuietErrors quiet;
+    if (h5.has_parent_path()) fs::create_directories(h5.parent_path());
+    write_h5(partial, document, scene, result);
+    fsync_file(partial);
+    fs::rename(partial, h5);
+  } catch (const Failure& failure) {
+    fs::remove(partial, ignored);
+    throw InputError(fmt::format("{}: cannot be written (HDF5: {})", h5.string(), failure.what));
+  } catch (const fs::filesystem_error& failure) {
+    fs::remove(partial, ignored);
+    throw InputError(fmt::format("{}: cannot be written: {}", h5.string(), failure.code().message()));
+  }
+  write_atomically(xdmf_beside(h5), xdmf(h5.filename().string(), result.snapshot));
+}
+
+}  // namespace kerf::forward
