@@ -1,0 +1,182 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <system_error>
+
+#include "forward/record/cut_file.hpp"
+#include "forward/record/result_json.hpp"
+#include "forward/run.hpp"
+#include "inverse/commands/commands.hpp"
+#include "models/base/error.hpp"
+#include "models/base/units.hpp"
+
+namespace kerf::commands {
+namespace {
+
+namespace fs = std::filesystem;
+
+volatile std::sig_atomic_t interrupted = 0;
+
+/// While it lives, the first Ctrl-C asks the run to stop at the next cell crossing; a second one ends the process.
+class StopOnInterrupt {
+ public:
+  StopOnInterrupt() {
+    struct sigaction action {};
+    action.sa_handler = [](int) { interrupted = 1; };
+    action.sa_flags = static_cast<int>(SA_RESETHAND);
+    ::sigaction(SIGINT, &action, &before_);
+  }
+  StopOnInterrupt(const StopOnInterrupt&) = delete;
+  StopOnInterrupt& operator=(const StopOnInterrupt&) = delete;
+  ~StopOnInterrupt() { ::sigaction(SIGINT, &before_, nullptr); }
+
+ private:
+  struct sigaction before_ {};
+};
+
+/// One refreshed line on a terminal; elsewhere a plain line now and then.
+class ProgressLine {
+ public:
+  void show(const forward::Progress& progress) {
+    const auto now = Clock::now();
+    if (now - last_ < (terminal_ ? std::chrono::milliseconds(200) : std::chrono::seconds(10))) return;
+    last_ = now;
+    const double to_go = progress.wall_seconds * (progress.length - progress.travel) / progress.travel;
+    fmt::print(stderr, "{}cut {:.2f} of {:.2f} mm   F_c {:.0f} N/m   {:.0f} s, at most {:.0f} s to go{}",
+               terminal_ ? "\r\033[K" : "", progress.travel, progress.length, newton_per_metre(progress.F_c),
+               progress.wall_seconds, to_go, terminal_ ? "" : "\n");
+    std::fflush(stderr);
+  }
+  void clear() const {
+    if (terminal_) fmt::print(stderr, "\r\033[K");
+  }
+  static double newton_per_metre(double force) { return force / consistent_units_in("N/m"); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  bool terminal_ = ::isatty(STDERR_FILENO) != 0;
+  Clock::time_point last_ = Clock::now();
+};
+
+/// Refuses, before hours are spent, a place where the result could not be put afterwards.
+void require_writable(const fs::path& h5) {
+  const auto refuse = [&](const std::string& why) {
+    throw InputError(fmt::format("{}: {}", h5.string(), why), ExitCode::usage);
+  };
+  if (h5.extension() != ".h5") refuse("the name of a cut's file ends in .h5");
+  if (fs::is_directory(h5)) refuse("is a directory; name a file to write");
+  fs::path parent = fs::absolute(h5).parent_path();
+  while (!fs::exists(parent)) parent = parent.parent_path();
+  if (!fs::is_directory(parent)) refuse(parent.string() + " is not a directory");
+  if (::access(parent.c_str(), W_OK | X_OK) != 0) {
+    const std::string why = std::generic_category().message(errno);
+    refuse("cannot write in " + parent.string() + ": " + why);
+  }
+}
+
+std::string joined(const std::vector<std::string>& reasons) {
+  std::string all;
+  for (const std::string& reason : reasons) all += (all.empty() ? "" : "; ") + reason;
+  return all;
+}
+
+std::string force(const Estimate& estimate) {
+  const double one = consistent_units_in("N/m");
+  return fmt::format("{:.0f} ± {:.0f} N/m", estimate.value / one, estimate.standard_error / one);
+}
+
+std::string verdict(const forward::CutResult& result) {
+  if (!result.accepted) return "not accepted: " + joined(result.refusals);
+  return fmt::format("accepted: F_c = {}, F_t = {}, steady from {:.2f} mm, {}", force(result.F_c), force(result.F_t),
+                     result.steady_from, forward::name(result.branch));
+}
+
+void print_table(const forward::CutResult& r) {
+  const auto row = [](const char* name, const std::string& value, const char* meaning) {
+    fmt::print("{:<22}{:>24}   {}\n", name, value, meaning);
+  };
+  const auto number = [](const Estimate& estimate, const char* unit) {
+    return fmt::format("{:.3g} ± {:.1g}{}{}", estimate.value, estimate.standard_error, *unit ? " " : "", unit);
+  };
+  row("F_c", force(r.F_c), "cutting force per width");
+  row("F_t", force(r.F_t), "transverse force per width, positive pushes the tool away");
+  row("  rake, normal", force(r.rake_normal), "");
+  row("  rake, friction", force(r.rake_tangential), "");
+  row("  bottom, normal", force(r.bottom_normal), "");
+  row("  bottom, friction", force(r.bottom_tangential), "");
+  row("steady", r.steady ? fmt::format("from {:.2f} mm", r.steady_from) : "no", "");
+  row("branch", forward::name(r.branch), "does the tool touch the crack tip?");
+  row("crack lead", number(r.crack_lead, "mm"), "crack tip ahead of the tool tip");
+  row("mode I fraction", fmt::format("{:.3f}", r.mode_I_fraction), "of the energy spent in separation");
+  row("fracture energy ratio", fmt::format("{:.4f}", r.fracture_energy_ratio), "booked per new area, over the law's");
+  row("chip ratio", number(r.chip_ratio, ""), "chip thickness over depth of cut");
+  row("chip curvature", number(r.chip_curvature, "1/mm"), "positive curls away from the tool");
+  row("deepest penetration", fmt::format("{:.3f} cells", r.deepest_penetration), "of a crack face into the tool");
+  fmt::print("\nenergy per width          J/m   share of the tool's work\n");
+  const auto book = [&](const char* name, double energy) {
+    fmt::print("{:<18}{:>11.4g}{:>10.2f} %\n", name, energy / consistent_units_in("J/m"),
+               100 * energy / r.ledger.tool_work);
+  };
+  book("tool work", r.ledger.tool_work);
+  book("  fracture", r.ledger.fracture);
+  book("  plastic", r.ledger.plastic);
+  book("  elastic", r.ledger.elastic);
+  book("  kinetic", r.ledger.kinetic);
+  book("  friction", r.ledger.friction);
+  book("  damping", r.ledger.damping);
+  book("  residue", r.ledger.residue());
+  fmt::print("\n{:.1f} s, {} steps, {:.3g} particle-steps ({:.3g} per second)\n", r.cost.wall_seconds, r.cost.steps,
+             static_cast<double>(r.cost.particle_steps),
+             static_cast<double>(r.cost.particle_steps) / r.cost.wall_seconds);
+}
+
+struct Options {
+  std::string scene, output;
+  bool json = false;
+};
+
+ExitCode simulate(const Options& options) {
+  const Document document = Document::load(options.scene);
+  const forward::Scene scene = forward::read_scene(document);
+  if (!options.output.empty()) require_writable(options.output);
+
+  const StopOnInterrupt guard;
+  ProgressLine line;
+  const forward::CutResult result = forward::run(scene, [&](const forward::Progress& progress) {
+    line.show(progress);
+    return interrupted == 0;
+  });
+  line.clear();
+
+  if (!options.output.empty()) forward::write_cut(options.output, document, result);
+  if (options.json)
+    fmt::print("{}\n", forward::result_json(result).dump(2));
+  else
+    print_table(result);
+  std::fflush(stdout);
+  fmt::print(stderr, "{}\n", verdict(result));
+  if (interrupted != 0) return ExitCode::interrupted;
+  return result.accepted ? ExitCode::success : ExitCode::not_converged;
+}
+
+}  // namespace
+
+void add_simulate(CLI::App& app, int& exit_code) {
+  auto* command = app.add_subcommand("simulate", "Simulate one cut and judge it");
+  const auto options = std::make_shared<Options>();
+  command->add_option("scene", options->scene, "scene file (TOML)")->required();
+  command->add_option("-o,--output", options->output, "keep the cut in this HDF5 file, with .xdmf for ParaView beside");
+  command->add_flag("--json", options->json, "print the result as JSON");
+  command->footer("Exit code 0: accepted. 4: finished, but a test of the result failed (said on stderr). 130: Ctrl-C.");
+  command->callback([options, &exit_code] { exit_code = static_cast<int>(simulate(*options)); });
+}
+
+}  // namespace kerf::commands
