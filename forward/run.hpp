@@ -23,6 +23,7 @@ struct ForceSample {
   double bottom_normal, bottom_tangential;
   double F_c, F_t;
   double crack_lead;  ///< mm
+  double fracture_I;  ///< mode I part of ledger.fracture
   Ledger ledger;      ///< state at the crossing's end
 };
 

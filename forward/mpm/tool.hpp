@@ -1,0 +1,18 @@
+#pragma once
+
+#include "forward/mpm/state.hpp"
+
+namespace kerf::forward {
+
+/// The tool is rigid and analytic; it touches the crack-face markers, never particles or nodes, so its normals are
+/// exact and contact begins where the face is. A penalty acts on the penetration phi < 0: normal traction -k phi; along
+/// the face a spring of the same stiffness follows the sliding up to the slip limit.
+
+/// Advances the tip with the velocity ramp and clears this step's tool force.
+void move_tool(State& state, const Cut& cut);
+
+/// Rake face against the upper side: the half-plane through the tip with normal (cos alpha, sin alpha).
+/// Friction: tau = min(mu p, cap sigma_y / sqrt 3), dissipation booked.
+void press_rake_face(State& state, double rake, const Friction* friction, double shear_yield, double stiffness);
+
+}  // namespace kerf::forward

@@ -1,0 +1,180 @@
+#include "forward/mpm/transfer.hpp"
+
+#include <algorithm>
+
+#include "forward/mpm/bspline.hpp"
+
+namespace kerf::forward {
+namespace {
+
+void clear(std::vector<double>& values) {
+  std::fill(values.begin(), values.end(), 0.0);
+}
+
+/// Adds one particle's mass and momentum to the nodes around it.
+void add_momentum(VelocityField& field, const Grid& grid, const Spline& sx, const Spline& sy, double mass,
+                  double velocity_x, double velocity_y) {
+  const Lanes weights = sx.row_weights();
+  const Lanes momentum = mass * weights * pairs(velocity_x, velocity_y);
+  const double m0 = mass * weights[0], m1 = mass * weights[2], m2 = mass * weights[4];
+  for (int row = 0; row < 3; ++row) {
+    const std::size_t node = grid.node(sx.base, sy.base + row);
+    const double w = sy.weight(row);
+    field.mass[node] += w * m0;
+    field.mass[node + 1] += w * m1;
+    field.mass[node + 2] += w * m2;
+    double* to = &field.momentum[2 * node];
+    store(to, load(to) + w * momentum);
+  }
+}
+
+/// Bottom row and everything below it does not move; the far end of the window holds its horizontal position.
+template <class Hold>
+void hold_boundary(const Grid& grid, Hold&& hold) {
+  constexpr int fixed_rows = 2, fixed_columns = 4;
+  for (int j = 0; j < fixed_rows; ++j)
+    for (int i = 0; i < grid.columns; ++i) hold(grid.node(i, j), true);
+  for (int j = 0; j < grid.rows; ++j)
+    for (int i = grid.columns - fixed_columns; i < grid.columns; ++i) hold(grid.node(i, j), false);
+}
+
+}  // namespace
+
+void gather_momentum(State& state) {
+  const Particles& p = state.particles;
+  for (int side = 0; side < 2; ++side) {
+    VelocityField& field = state.grid.side[static_cast<std::size_t>(side)];
+    clear(field.mass);
+    clear(field.momentum);
+  }
+  for (std::size_t side = 0; side < 2; ++side)
+    for (std::size_t i = p.begin[side]; i < p.begin[side + 1]; ++i)
+      add_momentum(state.grid.side[side], state.grid, Spline(state.grid.column_of(p.x[i])),
+                   Spline(state.grid.row_of(p.y[i])), p.volume[i] * state.density, p.velocity_x[i], p.velocity_y[i]);
+}
+
+void project_velocity(State& state) {
+  for (VelocityField& field : state.grid.side) {
+    clear(field.force);
+    const std::size_t count = field.mass.size();
+    for (std::size_t node = 0; node < count; ++node) {
+      const double inverse = field.mass[node] > state.smallest_mass ? 1.0 / field.mass[node] : 0.0;
+      field.velocity[2 * node] = field.momentum[2 * node] * inverse;
+      field.velocity[2 * node + 1] = field.momentum[2 * node + 1] * inverse;
+    }
+    hold_boundary(state.grid, [&](std::size_t node, bool bottom) {
+      field.velocity[2 * node] = 0.0;
+      if (bottom) field.velocity[2 * node + 1] = 0.0;
+    });
+  }
+}
+
+void update_stress(State& state, const laws::J2& material) {
+  Particles& p = state.particles;
+  const Grid& grid = state.grid;
+  const double slope_scale = 1.0 / grid.cell;
+  const double strain_scale = state.step * slope_scale;
+  for (std::size_t side = 0; side < 2; ++side) {
+    VelocityField& field = state.grid.side[side];
+    for (std::size_t first = p.begin[side]; first < p.begin[side + 1]; first += lane_count) {
+      double xx[lane_count], xy[lane_count], yx[lane_count], yy[lane_count];
+      int column[lane_count], row[lane_count];
+      double fx[lane_count], fy[lane_count];
+      for (std::size_t lane = 0; lane < lane_count; ++lane) {
+        const Spline sx(grid.column_of(p.x[first + lane])), sy(grid.row_of(p.y[first + lane]));
+        Lanes value{}, rise{};  // sum over rows, weighted by w_y and by its slope
+        for (int j = 0; j < 3; ++j) {
+          const Lanes v = load(&field.velocity[2 * grid.node(sx.base, sy.base + j)]);
+          value += sy.weight(j) * v;
+          rise += sy.slope(j) * v;
+        }
+        const Lanes along_x = sx.row_slopes() * value, along_y = sx.row_weights() * rise;
+        xx[lane] = strain_scale * sum_x(along_x);
+        yx[lane] = strain_scale * sum_y(along_x);
+        xy[lane] = strain_scale * sum_x(along_y);
+        yy[lane] = strain_scale * sum_y(along_y);
+        column[lane] = sx.base;
+        row[lane] = sy.base;
+        fx[lane] = sx.f;
+        fy[lane] = sy.f;
+      }
+      material.update(lane_count, {xx, xy, yx, yy},
+                      {&p.stress_xx[first], &p.stress_yy[first], &p.stress_zz[first], &p.stress_xy[first],
+                       &p.plastic_strain[first]});
+      for (std::size_t lane = 0; lane < lane_count; ++lane) {
+        const std::size_t i = first + lane;
+        const Spline sx(column[lane], fx[lane]), sy(row[lane], fy[lane]);
+        const double scale = -p.volume[i] * slope_scale;
+        const Lanes by_slope = sx.row_slopes() * pairs(scale * p.stress_xx[i], scale * p.stress_xy[i]);
+        const Lanes by_weight = sx.row_weights() * pairs(scale * p.stress_xy[i], scale * p.stress_yy[i]);
+        for (int j = 0; j < 3; ++j) {
+          double* to = &field.force[2 * grid.node(sx.base, sy.base + j)];
+          store(to, load(to) + sy.weight(j) * by_slope + sy.slope(j) * by_weight);
+        }
+      }
+    }
+  }
+}
+
+void accelerate(State& state) {
+  const double dt = state.step;
+  for (VelocityField& field : state.grid.side) {
+    const std::size_t count = field.mass.size();
+    for (std::size_t node = 0; node < count; ++node) {
+      const double impulse = field.mass[node] > state.smallest_mass ? dt / field.mass[node] : 0.0;
+      for (std::size_t k = 2 * node; k < 2 * node + 2; ++k) {
+        field.change[k] = impulse * field.force[k];
+        field.next_velocity[k] = field.velocity[k] + field.change[k];
+      }
+    }
+    hold_boundary(state.grid, [&](std::size_t node, bool bottom) {
+      const double inverse = field.mass[node] > state.smallest_mass ? 1.0 / field.mass[node] : 0.0;
+      for (std::size_t k = 2 * node; k < 2 * node + (bottom ? 2 : 1); ++k) {
+        field.next_velocity[k] = 0.0;
+        field.change[k] = -field.momentum[k] * inverse;
+      }
+    });
+    clear(field.mass);
+    clear(field.momentum);
+  }
+}
+
+void advance(State& state, double pic) {
+  Particles& p = state.particles;
+  const Grid& grid = state.grid;
+  const double dt = state.step;
+  double lost = 0.0;
+  for (std::size_t side = 0; side < 2; ++side) {
+    VelocityField& field = state.grid.side[side];
+    for (std::size_t i = p.begin[side]; i < p.begin[side + 1]; ++i) {
+      const Spline sx(grid.column_of(p.x[i])), sy(grid.row_of(p.y[i]));
+      Lanes next{}, change{};
+      for (int j = 0; j < 3; ++j) {
+        const std::size_t node = 2 * grid.node(sx.base, sy.base + j);
+        next += sy.weight(j) * load(&field.next_velocity[node]);
+        change += sy.weight(j) * load(&field.change[node]);
+      }
+      const Lanes weights = sx.row_weights();
+      next *= weights;
+      change *= weights;
+      const double move_x = sum_x(next), move_y = sum_y(next);
+      const double flip_x = p.velocity_x[i] + sum_x(change), flip_y = p.velocity_y[i] + sum_y(change);
+      const double vx = flip_x + pic * (move_x - flip_x), vy = flip_y + pic * (move_y - flip_y);
+      const double mass = p.volume[i] * state.density;
+      lost += 0.5 * mass * (flip_x * flip_x + flip_y * flip_y - vx * vx - vy * vy);
+      p.velocity_x[i] = vx;
+      p.velocity_y[i] = vy;
+      p.x[i] += dt * move_x;
+      p.y[i] += dt * move_y;
+      const double column = grid.column_of(p.x[i]), row = grid.row_of(p.y[i]);
+      if (!grid.holds(column, row)) [[unlikely]] {
+        state.broken_down = true;
+        return;
+      }
+      add_momentum(field, grid, Spline(column), Spline(row), mass, vx, vy);
+    }
+  }
+  state.work.damping += lost;
+}
+
+}  // namespace kerf::forward

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "forward/mpm/state.hpp"
+
+namespace kerf::forward {
+
+/// Lays the first window of material around the tool: a block that begins at x = 0 with the notch cut, the tip at its
+/// end.
+State lay_out(const Scene& scene);
+
+/// Follows the tool by one cell: retires the wake and the chip's end (their energies are booked), feeds a column of
+/// virgin material with its markers ahead, sorts the particles by (side, cell row, cell) and pads the batches.
+void shift_window(State& state, const Scene& scene);
+
+}  // namespace kerf::forward

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <vector>
+
+#include "forward/mpm/state.hpp"
+#include "forward/run.hpp"
+
+namespace kerf::forward {
+
+/// Energies of this instant, N mm/mm: what particles and springs hold, what has left with them, what was done.
+Ledger take_stock(const State& state, const laws::J2& material);
+
+/// Thickness ratio h_c/h and curvature of the chip between 1.25 and 2.75 depths above the plane, from the velocity of
+/// its particles relative to the tool: volume is kept, so h_c/h = v_tool / v_chip; curvature = spin / v_chip.
+struct ChipShape {
+  double ratio, curvature;
+};
+ChipShape measure_chip(const State& state, double depth);
+
+/// Averages what every step reports over whole cell crossings of the tool: the raw force is periodic in the cell.
+class Recorder {
+ public:
+  void add_step(const State& state);
+  /// Closes the current crossing.
+  void add_crossing(const State& state, const Scene& scene);
+
+  const std::vector<ForceSample>& history() const { return history_; }
+  const std::vector<ChipShape>& chip() const { return chip_; }
+
+ private:
+  ToolForce sum_;
+  double steps_ = 0;
+  std::vector<ForceSample> history_;
+  std::vector<ChipShape> chip_;
+};
+
+}  // namespace kerf::forward

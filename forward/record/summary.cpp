@@ -1,0 +1,145 @@
+#include "forward/record/summary.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "forward/record/statistics.hpp"
+
+namespace kerf::forward {
+namespace {
+
+template <class Samples, class Member>
+std::vector<double> series(const Samples& samples, Member member) {
+  std::vector<double> values;
+  values.reserve(samples.size());
+  for (const auto& sample : samples) values.push_back(sample.*member);
+  return values;
+}
+
+/// First crossing that may count: the ramp is over, the tool has passed the notch and a depth of steady material.
+std::size_t earliest(const Scene& scene) {
+  const double ramp_travel = 0.5 * scene.cut.speed * scene.cut.ramp;
+  const double travel = ramp_travel + (1.0 + scene.cut.notch) * scene.cut.depth;
+  return static_cast<std::size_t>(std::ceil(travel / scene.cell()));
+}
+
+struct SteadyPart {
+  std::size_t from;
+  bool steady;
+};
+
+/// Steady when, after the truncation point, at least two depths remain and their halves agree to 1 % or to twice the
+/// scatter of their difference.
+SteadyPart steady_part(const std::vector<double>& force, const Scene& scene) {
+  const std::size_t from = truncation_point(force, earliest(scene));
+  const std::size_t shortest = 2 * static_cast<std::size_t>(scene.resolution.cells_through_chip);
+  if (from + shortest > force.size()) return {std::min(from, force.size()), false};
+  const std::span<const double> rest(force.data() + from, force.size() - from);
+  const Estimate first = batch_mean(rest.first(rest.size() / 2)), second = batch_mean(rest.last(rest.size() / 2));
+  const double difference = std::abs(first.value - second.value);
+  return {from, difference < 0.01 * std::abs(batch_mean(rest).value)};
+}
+
+/// G_c of the mixed-mode criterion at a mode I share: (s G/G_Ic)^n + ((1 - s) G/G_IIc)^m = 1, by bisection.
+double mixed_toughness(const Cohesive& cohesive, double share) {
+  const double G_I = cohesive.mode_I->toughness(), G_II = cohesive.mode_II->toughness();
+  double low = 0.0, high = 2.0 * std::max(G_I, G_II);
+  for (int i = 0; i < 100; ++i) {
+    const double G = 0.5 * (low + high);
+    const double sum =
+        std::pow(share * G / G_I, cohesive.exponent_n) + std::pow((1.0 - share) * G / G_II, cohesive.exponent_m);
+    (sum < 1.0 ? low : high) = G;
+  }
+  return 0.5 * (low + high);
+}
+
+Snapshot picture(const State& state) {
+  Snapshot shot;
+  const Particles& p = state.particles;
+  for (const std::size_t side : {below, above})
+    for (std::size_t i = p.begin[side]; i < p.begin[side + 1]; ++i) {
+      if (p.volume[i] == 0.0) continue;
+      const double pressure = -(p.stress_xx[i] + p.stress_yy[i] + p.stress_zz[i]) / 3.0;
+      const double sx = p.stress_xx[i] + pressure, sy = p.stress_yy[i] + pressure, sz = p.stress_zz[i] + pressure;
+      shot.x.push_back(p.x[i]);
+      shot.y.push_back(p.y[i]);
+      shot.velocity_x.push_back(p.velocity_x[i]);
+      shot.velocity_y.push_back(p.velocity_y[i]);
+      shot.equivalent_stress.push_back(
+          std::sqrt(1.5 * (sx * sx + sy * sy + sz * sz + 2.0 * p.stress_xy[i] * p.stress_xy[i])));
+      shot.pressure.push_back(pressure);
+      shot.plastic_strain.push_back(p.plastic_strain[i]);
+      shot.side.push_back(side == above ? 1 : -1);
+    }
+  const Crack& crack = state.crack;
+  for (std::size_t k = 0; k < crack.size(); ++k) {
+    if (crack.face[above].inverse_mass[k] > 0.0) {
+      shot.upper_face_x.push_back(crack.face[above].x[k]);
+      shot.upper_face_y.push_back(crack.face[above].y[k]);
+    }
+    if (crack.face[below].inverse_mass[k] > 0.0) {
+      shot.lower_face_x.push_back(crack.face[below].x[k]);
+      shot.lower_face_y.push_back(crack.face[below].y[k]);
+    }
+  }
+  shot.tool_tip_x = state.tool.x;
+  shot.tool_tip_y = state.tool.y;
+  shot.cell = state.grid.cell;
+  return shot;
+}
+
+}  // namespace
+
+bool well_enough_known(const std::vector<ForceSample>& history, const Scene& scene) {
+  if (history.back().travel < scene.steady_state.not_before * scene.cut.depth) return false;
+  const std::vector<double> force = series(history, &ForceSample::F_c);
+  const SteadyPart part = steady_part(force, scene);
+  if (!part.steady) return false;
+  const Estimate mean = batch_mean(std::span(force).subspan(part.from));
+  return mean.standard_error < scene.steady_state.tolerance * std::abs(mean.value);
+}
+
+void summarise(CutResult& result, const Recorder& recorder, const State& state, const Scene& scene) {
+  const std::vector<ForceSample>& history = recorder.history();
+  result.history = history;
+  result.snapshot = picture(state);
+  if (history.empty()) return;
+  result.ledger = history.back().ledger;
+
+  const SteadyPart part = steady_part(series(history, &ForceSample::F_c), scene);
+  result.steady = part.steady;
+  const std::size_t from = std::min(part.from, history.size() - 1);
+  result.steady_from = history[from].travel;
+  const auto mean = [&](auto member) {
+    const std::vector<double> values = series(history, member);
+    return batch_mean(std::span(values).subspan(from));
+  };
+  result.F_c = mean(&ForceSample::F_c);
+  result.F_t = mean(&ForceSample::F_t);
+  result.rake_normal = mean(&ForceSample::rake_normal);
+  result.rake_tangential = mean(&ForceSample::rake_tangential);
+  result.bottom_normal = mean(&ForceSample::bottom_normal);
+  result.bottom_tangential = mean(&ForceSample::bottom_tangential);
+  result.crack_lead = mean(&ForceSample::crack_lead);
+  result.deepest_penetration = mean(&ForceSample::penetration).value / scene.cell();
+  const auto chip_mean = [&](auto member) {
+    const std::vector<double> values = series(recorder.chip(), member);
+    return batch_mean(std::span(values).subspan(from));
+  };
+  result.chip_ratio = chip_mean(&ChipShape::ratio);
+  result.chip_curvature = chip_mean(&ChipShape::curvature);
+  result.branch = result.crack_lead.value > scene.cut.depth ? Branch::bending : Branch::touching;
+
+  const double mode_I = history.back().fracture_I - history[from].fracture_I;
+  const double fracture = history.back().ledger.fracture - history[from].ledger.fracture;
+  const double area = history.back().travel - history[from].travel;
+  result.mode_I_fraction = mode_I / fracture;
+  result.fracture_energy_ratio =
+      fracture / area / mixed_toughness(scene.cohesive, std::clamp(result.mode_I_fraction, 0.0, 1.0));
+}
+
+const char* name(Branch branch) {
+  return branch == Branch::touching ? "touching" : "bending";
+}
+
+}  // namespace kerf::forward
