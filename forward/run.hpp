@@ -24,6 +24,7 @@ struct ForceSample {
   double F_c, F_t;
   double crack_lead;  ///< mm
   double fracture_I;  ///< mode I part of ledger.fracture
+  double penetration;  ///< deepest of a crack face into the tool, mm
   Ledger ledger;      ///< state at the crossing's end
 };
 
