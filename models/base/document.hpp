@@ -45,7 +45,8 @@ class Document {
   /// The declaration behind a dotted path, or throws InputError as above. `where` begins the message.
   static const Parameter& find_number(std::string_view path, const std::vector<Block>& known, std::string_view where);
 
-  /// Canonical text (sorted keys, no comments): equal for documents that mean the same; used as a run's identity.
+  /// Canonical text, itself TOML (sorted keys, no comments): equal for documents that differ only in layout; used as a
+  /// run's identity.
   std::string canonical() const;
   const std::string& name() const { return name_; }
 

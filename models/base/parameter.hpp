@@ -35,6 +35,9 @@ struct Parameter {
   }
 };
 
+/// What a number may be, in words: "0.001 to 1000 MPa", "at least 0", "any number".
+std::string allowed_range(const Parameter& parameter);
+
 /// Declarations read like a table: number("yield_stress", "MPa", 1e-3, 1e5, "uniaxial yield stress").
 Parameter number(std::string key, std::string unit, double lower, double upper, std::string meaning);
 Parameter text(std::string key, std::string meaning, std::vector<std::string> choices = {});

@@ -16,6 +16,10 @@ double consistent_units_in(std::string_view unit);
 /// True when both units measure the same dimension. An angle is told apart from a pure number.
 bool same_dimension(std::string_view unit, std::string_view other);
 
+/// The unit of the consistent system that measures the same dimension ("J/m^2" -> "N/mm", "kg/m^3" -> "mm^-3 tonne^1");
+/// `consistent_units_in` of it is exactly 1.
+std::string consistent_unit(std::string_view unit);
+
 /// A quantity as a user writes it: "0.5 mm" -> {0.5, "mm"}; "0.5" -> {0.5, ""}.
 /// Throws std::invalid_argument when `text` does not begin with a finite number.
 struct Quantity {

@@ -1,0 +1,133 @@
+#include "models/base/quantity.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <stdexcept>
+
+#include "models/base/units.hpp"
+
+namespace kerf {
+namespace {
+
+/// Units that people write in cutting papers; the pool from which hints are drawn.
+const std::vector<std::string>& usual_units() {
+  static const std::vector<std::string> units{
+      "mm",  "um",   "m",    "nm",  "MPa",    "GPa",    "kPa",    "Pa",    "J/m^2",  "kJ/m^2", "N/mm",
+      "N/m", "kN/m", "N",    "kN",  "mN",     "mm/s",   "m/s",    "m/min", "mm/min", "s",      "ms",
+      "us",  "min",  "deg",  "rad", "kg/m^3", "g/cm^3", "1/s",    "1/ms",  "mm^2",   "m^2",    "tonne/mm^3",
+      "K",   "1/K",  "1/mm", "1/m", "MPa/mm", "GPa/m",  "N/mm^3", "N mm",  "N m",    "J",      "mJ"};
+  return units;
+}
+
+std::vector<std::string> usual_units_like(std::string_view unit) {
+  std::vector<std::string> alike;
+  for (const std::string& candidate : usual_units())
+    if (same_dimension(candidate, unit)) alike.push_back(candidate);
+  return alike;
+}
+
+double number_of(const Node& node, const Parameter& parameter, std::string& unit) {
+  const bool pure = parameter.unit == "1";
+  if (const auto* bare = std::get_if<double>(&node.value)) {
+    if (!std::isfinite(*bare)) throw std::invalid_argument("is not a finite number");
+    if (!pure)
+      throw std::invalid_argument(fmt::format("has no unit; write for example \"{} {}\"", *bare, parameter.unit));
+    unit = "1";
+    return *bare;
+  }
+  const std::string wanted =
+      pure ? "a number" : fmt::format("a number with its unit, such as \"1 {}\",", parameter.unit);
+  const auto* text = std::get_if<std::string>(&node.value);
+  if (!text) throw std::invalid_argument(fmt::format("is {}; {} belongs here", kind_of(node), wanted));
+  Quantity quantity;
+  try {
+    quantity = split_quantity(*text);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(fmt::format("is refused: {}; {} belongs here", error.what(), wanted));
+  }
+  if (pure)
+    throw std::invalid_argument(fmt::format("is a pure number; write {} without quotes or unit", quantity.number));
+  if (quantity.unit.empty())
+    throw std::invalid_argument(
+        fmt::format("has no unit; write for example \"{} {}\"", quantity.number, parameter.unit));
+  unit = quantity.unit;
+  return quantity.number;
+}
+
+/// A usual unit that would put `number` into the allowed range: people mistake the prefix, not the digits.
+std::string in_range_hint(double number, std::string_view unit, const Parameter& parameter, double lower,
+                          double upper) {
+  const double written = consistent_units_in(unit);
+  const std::string* best = nullptr;
+  double smallest = std::numeric_limits<double>::infinity();
+  const auto alike = usual_units_like(parameter.unit);
+  for (const std::string& candidate : alike) {
+    const double factor = consistent_units_in(candidate);
+    const double decades = std::abs(std::log10(factor / written));
+    const double value = number * factor;
+    if (value < lower || value > upper || decades < 1e-9 || decades > smallest - 1e-9) continue;
+    smallest = decades;
+    best = &candidate;
+  }
+  return best ? fmt::format("; did you mean {}?", *best) : "";
+}
+
+}  // namespace
+
+std::string kind_of(const Node& node) {
+  constexpr std::array<const char*, 5> words{"a number", "true or false", "a string", "a list", "a table"};
+  return words.at(node.value.index());
+}
+
+std::string unit_hint(std::string_view unit, std::string_view expected) {
+  const auto alike = usual_units_like(expected);
+  // Case is the usual slip ("Mpa"), and then the pool of all dimensions would only confuse.
+  if (const auto near = nearest(unit, alike)) return fmt::format("; did you mean {}?", *near);
+  return fmt::format("; a unit such as {} belongs here", expected);
+}
+
+double read_number(const Node& node, const Parameter& parameter) {
+  std::string unit;
+  const double number = number_of(node, parameter, unit);
+  double factor = 1.0;
+  try {
+    factor = consistent_units_in(unit);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(fmt::format("is refused: {}{}", error.what(), unit_hint(unit, parameter.unit)));
+  }
+  if (!same_dimension(unit, parameter.unit))
+    throw std::invalid_argument(
+        fmt::format("is in {}, which does not measure this; a unit such as {} belongs here", unit, parameter.unit));
+
+  const double value = number * factor;
+  const double scale = consistent_units_in(parameter.unit);
+  // A bound given in another unit may differ from itself by rounding.
+  constexpr double rounding = 4.0 * std::numeric_limits<double>::epsilon();
+  const double lower = parameter.lower * scale - std::abs(parameter.lower * scale) * rounding;
+  const double upper = parameter.upper * scale + std::abs(parameter.upper * scale) * rounding;
+  if (!(value >= lower && value <= upper)) {
+    const bool below = value < lower;
+    throw std::invalid_argument(fmt::format("is {} {:g}{} (allowed: {}){}", below ? "below" : "above",
+                                            below ? parameter.lower : parameter.upper,
+                                            parameter.unit == "1" ? "" : " " + parameter.unit, allowed_range(parameter),
+                                            in_range_hint(number, unit, parameter, lower, upper)));
+  }
+  return value;
+}
+
+Node::Value write_number(double value, const Parameter& parameter) {
+  if (parameter.unit == "1") return value;
+  const double factor = consistent_units_in(parameter.unit);
+  const double quotient = value / factor;
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const double number : {quotient, std::nextafter(quotient, -infinity), std::nextafter(quotient, infinity)})
+    if (std::bit_cast<std::uint64_t>(number * factor) == std::bit_cast<std::uint64_t>(value))
+      return fmt::format("{} {}", number, parameter.unit);
+  return fmt::format("{} {}", value, consistent_unit(parameter.unit));
+}
+
+}  // namespace kerf
