@@ -104,7 +104,7 @@ struct Column {
   double Owner::*value;
 };
 
-constexpr std::array<Column<ForceSample>, 8> history_columns{
+constexpr std::array<Column<ForceSample>, 9> history_columns{
     {{"travel", "mm", &ForceSample::travel},
      {"F_c", "N/mm", &ForceSample::F_c},
      {"F_t", "N/mm", &ForceSample::F_t},
@@ -112,7 +112,8 @@ constexpr std::array<Column<ForceSample>, 8> history_columns{
      {"rake_tangential", "N/mm", &ForceSample::rake_tangential},
      {"bottom_normal", "N/mm", &ForceSample::bottom_normal},
      {"bottom_tangential", "N/mm", &ForceSample::bottom_tangential},
-     {"crack_lead", "mm", &ForceSample::crack_lead}}};
+     {"crack_lead", "mm", &ForceSample::crack_lead},
+     {"penetration", "mm", &ForceSample::penetration}}};
 
 constexpr const char* energy_unit = "N mm/mm";
 constexpr std::array<Column<Ledger>, 7> ledger_columns{{{"tool_work", energy_unit, &Ledger::tool_work},
