@@ -22,17 +22,20 @@ std::vector<Stage> plan(const Scene& scene) {
   };
   add("project", "grid velocities p/m of both sides of the crack plane", project_velocity);
   add("markers", "crack-face markers follow the projected velocity of their side", move_markers);
+  add("tool", "the tool advances", [&scene](State& state) { move_tool(state, scene.cut); });
   add("stress", "velocity gradients, J2 stresses (stress first), internal forces",
       [&scene](State& state) { update_stress(state, scene.material); });
-  add("cohesion", "cohesive tractions between the faces; pairs break at the mixed-mode criterion; closing faces touch",
-      [&scene, stiffness](State& state) { pull_faces(state, scene.cohesive, stiffness); });
-  add("tool", "the tool advances", [&scene](State& state) { move_tool(state, scene.cut); });
-  add("rake face",
-      scene.friction ? "the rake face presses on the upper side, with friction"
-                     : "the rake face presses on the upper side",
-      [&scene, stiffness, shear_yield](State& state) {
-        press_rake_face(state, scene.tool.rake, scene.friction ? &*scene.friction : nullptr, shear_yield, stiffness);
-      });
+  add("cohesion", "cohesive tractions between the faces; pairs break at the mixed-mode criterion",
+      [&scene](State& state) { pull_faces(state, scene.cohesive); });
+  add("closing", "the upper face cannot enter the lower one",
+      [stiffness](State& state) { close_faces(state, stiffness); });
+  add("rake face", "the rake face presses on the upper side",
+      [&scene, stiffness](State& state) { press_rake_face(state, scene.tool.rake, stiffness); });
+  if (scene.friction)
+    add("friction", "the chip rubs on the rake face, up to the slip limit and the yield cap",
+        [&scene, stiffness, shear_yield](State& state) {
+          rub_rake_face(state, scene.tool.rake, *scene.friction, shear_yield, stiffness);
+        });
   add("spread", "marker forces go to the nodes they were interpolated from", spread_marker_forces);
   add("accelerate", "new grid velocities under the fixed boundary", accelerate);
   add("advance",

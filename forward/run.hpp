@@ -20,12 +20,13 @@ struct Ledger {
 struct ForceSample {
   double travel;                        ///< tool position at the crossing's end, mm
   double rake_normal, rake_tangential;  ///< N and T on the rake face
+  double slip_limit;                    ///< T when every point of the rake face slides
   double bottom_normal, bottom_tangential;
   double F_c, F_t;
-  double crack_lead;  ///< mm
-  double fracture_I;  ///< mode I part of ledger.fracture
+  double crack_lead;   ///< mm
+  double fracture_I;   ///< mode I part of ledger.fracture
   double penetration;  ///< deepest of a crack face into the tool, mm
-  Ledger ledger;      ///< state at the crossing's end
+  Ledger ledger;       ///< state at the crossing's end
 };
 
 enum class Branch { touching, bending };
@@ -48,9 +49,10 @@ struct Snapshot {
 struct CutResult {
   Estimate F_c, F_t;  ///< N/mm per unit width, means over the steady part
   Estimate rake_normal, rake_tangential, bottom_normal, bottom_tangential;
-  Estimate chip_ratio;      ///< chip thickness / depth of cut
-  Estimate chip_curvature;  ///< 1/mm; positive curls away from the tool
-  Estimate crack_lead;      ///< mm from the tool tip to the foremost broken pair
+  double sliding_share = 1;  ///< T over its slip limit: 1 when the whole contact slides
+  Estimate chip_ratio;       ///< chip thickness / depth of cut
+  Estimate chip_curvature;   ///< 1/mm; positive curls away from the tool
+  Estimate crack_lead;       ///< mm from the tool tip to the foremost broken pair
   Branch branch = Branch::touching;
   double mode_I_fraction = 0;
   double fracture_energy_ratio = 0;  ///< booked energy per new area over the law's

@@ -56,19 +56,14 @@ void move_markers(State& state) {
   }
 }
 
-void pull_faces(State& state, const Cohesive& cohesive, double stiffness) {
+void pull_faces(State& state, const Cohesive& cohesive) {
   Crack& crack = state.crack;
   const Face &upper = crack.face[above], &lower = crack.face[below];
   const double length = crack.spacing;
   for (std::size_t k = 0; k < crack.size(); ++k) {
     if (upper.inverse_mass[k] == 0.0 || lower.inverse_mass[k] == 0.0) continue;
-    const double normal = upper.y[k] - lower.y[k], shear = upper.x[k] - lower.x[k];
-    if (normal < 0.0 && std::abs(shear) < state.grid.cell) {
-      const double pressure = -stiffness * normal;
-      add_pair_force(crack, k, 0.0, pressure * length);
-      state.contact_energy += 0.5 * pressure * -normal * length;
-    }
     if (!crack.intact[k]) continue;
+    const double normal = upper.y[k] - lower.y[k], shear = upper.x[k] - lower.x[k];
     const double opening = std::max(normal, 0.0), slip = std::abs(shear);
     const double normal_traction = traction(*cohesive.mode_I, opening, crack.largest_normal[k]);
     const double shear_traction = std::copysign(traction(*cohesive.mode_II, slip, crack.largest_shear[k]), shear);
@@ -91,6 +86,36 @@ void pull_faces(State& state, const Cohesive& cohesive, double stiffness) {
       continue;
     }
     add_pair_force(crack, k, -shear_traction * length, -normal_traction * length);
+  }
+}
+
+void close_faces(State& state, double stiffness) {
+  Crack& crack = state.crack;
+  Face &upper = crack.face[above], &lower = crack.face[below];
+  if (crack.size() < 2) return;
+  const std::size_t last = crack.size() - 2;
+  const double length = crack.spacing;
+  for (std::size_t k = 0; k < crack.size(); ++k) {
+    if (upper.inverse_mass[k] == 0.0) continue;
+    const double x = upper.x[k];
+    if (x < lower.x.front() || x > lower.x.back()) continue;
+    // The lower face hardly moves: start where the reference spacing says and step to the segment that holds x.
+    auto j = std::min(last, static_cast<std::size_t>((x - lower.x.front()) / length));
+    while (j > 0 && lower.x[j] > x) --j;
+    while (j < last && lower.x[j + 1] < x) ++j;
+    if (lower.inverse_mass[j] == 0.0 || lower.inverse_mass[j + 1] == 0.0) continue;
+    const double run = lower.x[j + 1] - lower.x[j];
+    const double t = (x - lower.x[j]) / run, slope = (lower.y[j + 1] - lower.y[j]) / run;
+    const double gap = upper.y[k] - (lower.y[j] + t * run * slope);
+    if (gap >= 0.0 || gap < -2.0 * state.grid.cell) continue;
+    const double push = -stiffness * gap * length;
+    upper.force_x[k] -= slope * push;
+    upper.force_y[k] += push;
+    lower.force_x[j] += (1.0 - t) * slope * push;
+    lower.force_y[j] -= (1.0 - t) * push;
+    lower.force_x[j + 1] += t * slope * push;
+    lower.force_y[j + 1] -= t * push;
+    state.contact_energy -= 0.5 * push * gap;
   }
 }
 

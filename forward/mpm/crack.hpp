@@ -12,10 +12,14 @@ namespace kerf::forward {
 /// Reads the projected velocity at every marker, moves it, and clears its force.
 void move_markers(State& state);
 
-/// Cohesive tractions between unbroken pairs and contact of closing faces. Openings are measured in the crack plane's
-/// directions; each mode follows its own law, unloading to the origin; the pair breaks, both tractions at once, when
-/// (G_I/G_Ic)^n + (G_II/G_IIc)^m = 1 (theory Eq. 8). `stiffness` resists interpenetration, MPa/mm.
-void pull_faces(State& state, const Cohesive& cohesive, double stiffness);
+/// Cohesive tractions between unbroken pairs. Openings are measured in the crack plane's directions; each mode follows
+/// its own law, unloading to the origin; the pair breaks, both tractions at once, when
+/// (G_I/G_Ic)^n + (G_II/G_IIc)^m = 1 (theory Eq. 8).
+void pull_faces(State& state, const Cohesive& cohesive);
+
+/// The upper face cannot enter the lower one, wherever it has slid to: a penalty (`stiffness`, MPa/mm) on the gap
+/// between an upper marker and the segment of the lower face below it. Frictionless.
+void close_faces(State& state, double stiffness);
 
 /// Shares the markers' forces to the nodes they were interpolated from.
 void spread_marker_forces(State& state);

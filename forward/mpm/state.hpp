@@ -65,6 +65,7 @@ struct Crack {
   std::vector<double> largest_normal, largest_shear;  ///< openings so far, mm
   std::vector<double> traction_normal, traction_shear;
   std::vector<double> rake_slip, edge_slip;  ///< elastic part of the sliding on the tool, mm
+  std::vector<double> rake_pressure;         ///< of this step, MPa
   std::vector<std::uint8_t> intact;
   double spacing = 0;
   double front = 0;  ///< reference position of the foremost broken pair
@@ -78,6 +79,7 @@ struct ToolState {
 /// Force of the tool on the work this step, N/mm, and the deepest penetration (mm).
 struct ToolForce {
   double rake_normal = 0, rake_tangential = 0, bottom_normal = 0, bottom_tangential = 0;
+  double slip_limit = 0;  ///< rake_tangential when every point slides
   double on_work_x = 0, on_work_y = 0;
   double penetration = 0;
 };

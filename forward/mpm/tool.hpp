@@ -12,7 +12,10 @@ namespace kerf::forward {
 void move_tool(State& state, const Cut& cut);
 
 /// Rake face against the upper side: the half-plane through the tip with normal (cos alpha, sin alpha).
-/// Friction: tau = min(mu p, cap sigma_y / sqrt 3), dissipation booked.
-void press_rake_face(State& state, double rake, const Friction* friction, double shear_yield, double stiffness);
+void press_rake_face(State& state, double rake, double stiffness);
+
+/// Friction on the pressures just found: tau = min(mu p, cap sigma_y / sqrt 3), the dissipation booked. The cap looks
+/// at the pressure of a cell, not of a marker.
+void rub_rake_face(State& state, double rake, const Friction& friction, double shear_yield, double stiffness);
 
 }  // namespace kerf::forward

@@ -18,6 +18,38 @@ void push(Particles& p, double x, double y, double volume) {
   p.volume.back() = volume;
 }
 
+struct Point {
+  double x, y;
+};
+
+/// A marker pair at reference position `at` of the crack plane; its upper marker may lie elsewhere.
+void add_pair(Crack& crack, double at, Point upper, bool intact) {
+  crack.reference_x.push_back(at);
+  crack.intact.push_back(intact);
+  if (!intact) crack.front = std::max(crack.front, at);
+  for (auto* values : {&crack.largest_normal, &crack.largest_shear, &crack.traction_normal, &crack.traction_shear,
+                       &crack.rake_slip, &crack.edge_slip})
+    values->push_back(0.0);
+  for (const Side side : {below, above}) {
+    Face& face = crack.face[side];
+    face.x.push_back(side == above ? upper.x : at);
+    face.y.push_back(side == above ? upper.y : 0.0);
+    for (auto* values : {&face.velocity_x, &face.velocity_y, &face.force_x, &face.force_y, &face.offset_x,
+                         &face.offset_y, &face.inverse_mass})
+      values->push_back(0.0);
+    face.node_column.push_back(0);
+    face.node_row.push_back(0);
+  }
+}
+
+/// The tool meets the layer's end first: the upper face goes on around it, down the end to the corner at the origin.
+/// These markers continue the crack plane outside the block, where nothing is opposite.
+void wrap_end(State& state, const Scene& scene) {
+  const double spacing = state.crack.spacing;
+  const int count = scene.resolution.cells_through_chip * scene.resolution.markers_per_cell;
+  for (int i = count - 1; i >= 0; --i) add_pair(state.crack, -spacing * (i + 0.5), {0.0, spacing * (i + 0.5)}, false);
+}
+
 /// One column of cells at rest, from x on, both sides of the plane. Particles are appended unsorted.
 void feed_column(State& state, const Scene& scene, double x) {
   const double cell = state.grid.cell;
@@ -28,25 +60,9 @@ void feed_column(State& state, const Scene& scene, double x) {
   for (int j = -down; j < up; ++j)
     for (int i = 0; i < per_side; ++i) push(state.particles, x + gap * (i + 0.5), gap * (j + 0.5), gap * gap);
 
-  Crack& crack = state.crack;
   for (int i = 0; i < scene.resolution.markers_per_cell; ++i) {
-    const double at = x + crack.spacing * (i + 0.5);
-    const bool intact = at > scene.cut.notch * scene.cut.depth;
-    crack.reference_x.push_back(at);
-    crack.intact.push_back(intact);
-    if (!intact) crack.front = std::max(crack.front, at);
-    for (auto* values : {&crack.largest_normal, &crack.largest_shear, &crack.traction_normal, &crack.traction_shear,
-                         &crack.rake_slip, &crack.edge_slip})
-      values->push_back(0.0);
-    for (Face& face : crack.face) {
-      face.x.push_back(at);
-      face.y.push_back(0.0);
-      for (auto* values : {&face.velocity_x, &face.velocity_y, &face.force_x, &face.force_y, &face.offset_x,
-                           &face.offset_y, &face.inverse_mass})
-        values->push_back(0.0);
-      face.node_column.push_back(0);
-      face.node_row.push_back(0);
-    }
+    const double at = x + state.crack.spacing * (i + 0.5);
+    add_pair(state.crack, at, {at, 0.0}, at > scene.cut.notch * scene.cut.depth);
   }
   state.fed_to = x + cell;
 }
@@ -168,6 +184,7 @@ State lay_out(const Scene& scene) {
   state.smallest_mass = 1e-12 * state.density * gap * gap;
   state.step = scene.resolution.courant_number * grid.cell / (scene.material.wave_speed() + scene.cut.speed);
   state.crack.spacing = grid.cell / scene.resolution.markers_per_cell;
+  wrap_end(state, scene);
   for (int i = 0; i < cells(scene.window.ahead); ++i) feed_column(state, scene, i * grid.cell);
   sort_into_batches(state, scene, sides(state.particles));
   gather_momentum(state);

@@ -2,11 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 namespace kerf::forward {
 
-void judge(CutResult& result, const Scene& scene) {
+void judge(CutResult& result) {
   const auto refuse = [&](std::string reason) { result.refusals.push_back(std::move(reason)); };
 
   const double residue = result.ledger.residue() / result.ledger.tool_work;
@@ -23,11 +21,10 @@ void judge(CutResult& result, const Scene& scene) {
     refuse("no steady force: the two halves of the record differ by more than 1 % and its own scatter");
   if (!(result.deepest_penetration < 0.25))
     refuse(fmt::format("a crack face went {:.2f} cells into the tool (allowed 0.25)", result.deepest_penetration));
-  if (scene.friction && result.rake_normal.value > 0.0) {
-    const double ratio = result.rake_tangential.value / result.rake_normal.value;
-    if (!(std::abs(ratio - scene.friction->coefficient) < 0.02 * scene.friction->coefficient + 1e-6))
-      refuse(fmt::format("the chip sticks: T/N is {:.3f} where mu = {:.3f}", ratio, scene.friction->coefficient));
-  }
+  if (!(result.sliding_share > 0.98))
+    refuse(
+        fmt::format("the chip sticks: the shear force on the rake face is {:.3f} of its slip limit (allowed from 0.98)",
+                    result.sliding_share));
   result.accepted = result.refusals.empty();
 }
 

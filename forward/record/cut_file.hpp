@@ -10,8 +10,7 @@ namespace kerf::forward {
 /// Keeps a simulated cut in an HDF5 file, with NAME.xdmf beside it for ParaView.
 ///
 /// - /history: one entry per cell crossing: travel, F_c, F_t, forces per tool face, crack_lead, ...; ledger/*
-/// - /particles: position (n x 2), velocity (n x 3), equivalent_stress, pressure, plastic_strain, side (+1 chip, -1
-/// base)
+/// - /particles: position (n x 2), velocity (n x 3), equivalent_stress, pressure, plastic_strain; side: 1 chip, -1 base
 /// - /faces: upper, lower (m x 2), the faces of the crack
 /// - /tool: tip_x, tip_y, rake; depth, cell: what a picture of the chip needs
 /// - attributes: title, code_version, scene (canonical text), result (JSON, see forward/record/result_json.hpp)

@@ -1,5 +1,6 @@
 #include "forward/record/recorder.hpp"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
@@ -27,37 +28,32 @@ Ledger take_stock(const State& state, const laws::J2& material) {
 
 ChipShape measure_chip(const State& state, double depth) {
   const Particles& p = state.particles;
-  double n = 0, mx = 0, my = 0, mu = 0, mv = 0, speed = 0;
-  const auto in_chip = [&](std::size_t i) {
-    return p.volume[i] > 0.0 && p.y[i] > 1.25 * depth && p.y[i] < 2.75 * depth;
+  const double low = 1.25 * depth, high = 2.75 * depth, middle = 0.5 * (low + high);
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d moments = Eigen::Vector3d::Zero();
+  const auto each_in_chip = [&](auto&& visit) {
+    for (std::size_t i = p.begin[above]; i < p.begin[above + 1]; ++i)
+      if (p.volume[i] > 0.0 && p.y[i] > low && p.y[i] < high) visit(i, (p.y[i] - middle) / depth);
   };
-  for (std::size_t i = p.begin[above]; i < p.begin[above + 1]; ++i) {
-    if (!in_chip(i)) continue;
-    const double u = p.velocity_x[i] - state.tool.speed, v = p.velocity_y[i];
-    n += 1.0;
-    mx += p.x[i];
-    my += p.y[i];
-    mu += u;
-    mv += v;
-    speed += std::hypot(u, v);
-  }
-  if (n < 8.0 || speed == 0.0) return {std::nan(""), std::nan("")};
-  mx /= n, my /= n, mu /= n, mv /= n, speed /= n;
-  double moment = 0, inertia = 0;
-  for (std::size_t i = p.begin[above]; i < p.begin[above + 1]; ++i) {
-    if (!in_chip(i)) continue;
-    const double rx = p.x[i] - mx, ry = p.y[i] - my;
-    const double u = p.velocity_x[i] - state.tool.speed - mu, v = p.velocity_y[i] - mv;
-    moment += rx * v - ry * u;
-    inertia += rx * rx + ry * ry;
-  }
-  // The tool stands behind the chip: a chip that turns clockwise on its way up leaves the face.
-  return {state.tool.speed / speed, -moment / inertia / speed};
+  std::size_t count = 0;
+  each_in_chip([&](std::size_t i, double eta) {
+    const Eigen::Vector3d row(1.0, eta, eta * eta);
+    normal += row * row.transpose();
+    moments += row * ((p.x[i] - state.tool.x) / depth);
+    ++count;
+  });
+  if (count < 16) return {std::nan(""), std::nan("")};
+  const Eigen::Vector3d line = normal.ldlt().solve(moments);
+  double area = 0.0;
+  each_in_chip(
+      [&](std::size_t i, double eta) { area += p.volume[i] / std::hypot(1.0, line[1] + 2.0 * line[2] * eta); });
+  return {area / ((high - low) * depth), 2.0 * line[2] / std::pow(std::hypot(1.0, line[1]), 3) / depth};
 }
 
 void Recorder::add_step(const State& state) {
   sum_.rake_normal += state.force.rake_normal;
   sum_.rake_tangential += state.force.rake_tangential;
+  sum_.slip_limit += state.force.slip_limit;
   sum_.bottom_normal += state.force.bottom_normal;
   sum_.bottom_tangential += state.force.bottom_tangential;
   sum_.on_work_x += state.force.on_work_x;
@@ -70,6 +66,7 @@ void Recorder::add_crossing(const State& state, const Scene& scene) {
   history_.push_back({.travel = state.tool.x,
                       .rake_normal = sum_.rake_normal / steps_,
                       .rake_tangential = sum_.rake_tangential / steps_,
+                      .slip_limit = sum_.slip_limit / steps_,
                       .bottom_normal = sum_.bottom_normal / steps_,
                       .bottom_tangential = sum_.bottom_tangential / steps_,
                       .F_c = sum_.on_work_x / steps_,

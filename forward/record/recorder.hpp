@@ -10,8 +10,9 @@ namespace kerf::forward {
 /// Energies of this instant, N mm/mm: what particles and springs hold, what has left with them, what was done.
 Ledger take_stock(const State& state, const laws::J2& material);
 
-/// Thickness ratio h_c/h and curvature of the chip between 1.25 and 2.75 depths above the plane, from the velocity of
-/// its particles relative to the tool: volume is kept, so h_c/h = v_tool / v_chip; curvature = spin / v_chip.
+/// Thickness ratio h_c/h and curvature (1/mm, positive away from the tool) of the chip between 1.25 and 2.75 depths
+/// above the plane: a parabola x(y) fitted to its particles is the centre line, and their volume is the thickness times
+/// its length. Velocities would tell the same with more noise.
 struct ChipShape {
   double ratio, curvature;
 };

@@ -118,6 +118,8 @@ void summarise(CutResult& result, const Recorder& recorder, const State& state, 
   result.F_t = mean(&ForceSample::F_t);
   result.rake_normal = mean(&ForceSample::rake_normal);
   result.rake_tangential = mean(&ForceSample::rake_tangential);
+  if (scene.friction && scene.friction->coefficient > 0.0)
+    result.sliding_share = result.rake_tangential.value / mean(&ForceSample::slip_limit).value;
   result.bottom_normal = mean(&ForceSample::bottom_normal);
   result.bottom_tangential = mean(&ForceSample::bottom_tangential);
   result.crack_lead = mean(&ForceSample::crack_lead);
