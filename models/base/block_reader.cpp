@@ -256,15 +256,19 @@ void BlockReader::read_block(const Block& block, Contents& contents) const {
     return;
   }
   if (!block.required) return;
-  // A table inside an optional table is required only with it.
+  // A table inside an optional table is needed only with it.
   for (const Block& other : known_)
-    if (!other.path.empty() && block.path.starts_with(other.path + ".") && !find_node(root_, other.path)) return;
+    if (!other.required && !other.path.empty() && block.path.starts_with(other.path + ".") &&
+        !find_node(root_, other.path))
+      return;
   const bool has_fallbacks =
       !block.repeated && variants_at(block.path).empty() &&
       std::all_of(block.parameters.begin(), block.parameters.end(),
                   [](const Parameter& parameter) { return parameter.fallback || parameter.optional; });
   if (!has_fallbacks)
-    throw InputError(fmt::format("{}: the table [{}] is missing: {}", place(1, 1), block.path, block.meaning));
+    throw InputError(fmt::format("{}: the table {} is missing: {}", place(1, 1),
+                                 fmt::format(fmt::runtime(block.repeated ? "[[{}]]" : "[{}]"), block.path),
+                                 block.meaning));
   Node empty;
   empty.value = Node::Table();
   contents.blocks_[block.path].push_back(read_table(empty, block.path));

@@ -55,6 +55,10 @@ Contents Document::read(const std::vector<Block>& known) const {
   return BlockReader(tree_->root, name_, known).read();
 }
 
+bool Document::has(std::string_view path) const {
+  return find_node(tree_->root, path) != nullptr;
+}
+
 const Parameter& Document::find_number(std::string_view path, const std::vector<Block>& known, std::string_view where) {
   const auto [block_path, key] = split_path(path);
   std::vector<std::string> paths;

@@ -38,6 +38,9 @@ class Document {
   /// that no block declares; the message says where, what was found, what is allowed and the nearest valid name.
   Contents read(const std::vector<Block>& known) const;
 
+  /// True when the file itself holds a key or table at this dotted path.
+  bool has(std::string_view path) const;
+
   /// Writes `value` (consistent units) at a dotted path such as "cohesive.mode_I.toughness", creating nothing: throws
   /// InputError naming the nearest known path when `path` is not a numeric parameter of a block in this document.
   void set_number(std::string_view path, double value, const std::vector<Block>& known);

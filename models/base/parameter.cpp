@@ -42,7 +42,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string allowed_range(const Parameter& parameter) {
-  const std::string unit = parameter.unit == "1" ? "" : " " + parameter.unit;
+  const std::string unit = parameter.unit == "1" ? "" : fmt::format(" {}", parameter.unit);
   const bool below = std::isfinite(parameter.lower), above = std::isfinite(parameter.upper);
   if (below && above) return fmt::format("{:g} to {:g}{}", parameter.lower, parameter.upper, unit);
   if (below) return fmt::format("at least {:g}{}", parameter.lower, unit);

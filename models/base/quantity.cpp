@@ -30,14 +30,14 @@ std::vector<std::string> usual_units_like(std::string_view unit) {
   return alike;
 }
 
-double number_of(const Node& node, const Parameter& parameter, std::string& unit) {
+/// The number and unit written at `node`, refused when the parameter wants another kind of value.
+Quantity written_at(const Node& node, const Parameter& parameter) {
   const bool pure = parameter.unit == "1";
   if (const auto* bare = std::get_if<double>(&node.value)) {
     if (!std::isfinite(*bare)) throw std::invalid_argument("is not a finite number");
     if (!pure)
       throw std::invalid_argument(fmt::format("has no unit; write for example \"{} {}\"", *bare, parameter.unit));
-    unit = "1";
-    return *bare;
+    return {*bare, parameter.unit};
   }
   const std::string wanted =
       pure ? "a number" : fmt::format("a number with its unit, such as \"1 {}\",", parameter.unit);
@@ -50,12 +50,11 @@ double number_of(const Node& node, const Parameter& parameter, std::string& unit
     throw std::invalid_argument(fmt::format("is refused: {}; {} belongs here", error.what(), wanted));
   }
   if (pure)
-    throw std::invalid_argument(fmt::format("is a pure number; write {} without quotes or unit", quantity.number));
+    throw std::invalid_argument(fmt::format("is a string, but a pure number belongs here; write {}", quantity.number));
   if (quantity.unit.empty())
     throw std::invalid_argument(
         fmt::format("has no unit; write for example \"{} {}\"", quantity.number, parameter.unit));
-  unit = quantity.unit;
-  return quantity.number;
+  return quantity;
 }
 
 /// A usual unit that would put `number` into the allowed range: people mistake the prefix, not the digits.
@@ -91,8 +90,11 @@ std::string unit_hint(std::string_view unit, std::string_view expected) {
 }
 
 double read_number(const Node& node, const Parameter& parameter) {
-  std::string unit;
-  const double number = number_of(node, parameter, unit);
+  const auto [number, unit] = written_at(node, parameter);
+  return in_range(number, unit, parameter);
+}
+
+double in_range(double number, std::string_view unit, const Parameter& parameter) {
   double factor = 1.0;
   try {
     factor = consistent_units_in(unit);
@@ -111,9 +113,11 @@ double read_number(const Node& node, const Parameter& parameter) {
   const double upper = parameter.upper * scale + std::abs(parameter.upper * scale) * rounding;
   if (!(value >= lower && value <= upper)) {
     const bool below = value < lower;
-    throw std::invalid_argument(fmt::format("is {} {:g}{} (allowed: {}){}", below ? "below" : "above",
-                                            below ? parameter.lower : parameter.upper,
-                                            parameter.unit == "1" ? "" : " " + parameter.unit, allowed_range(parameter),
+    const double bound = below ? parameter.lower : parameter.upper;
+    const std::string words =
+        parameter.unit == "1" ? fmt::format("{:g}", bound) : fmt::format("{:g} {}", bound, parameter.unit);
+    throw std::invalid_argument(fmt::format("is {} {} (allowed: {}){}", below ? "below" : "above", words,
+                                            allowed_range(parameter),
                                             in_range_hint(number, unit, parameter, lower, upper)));
   }
   return value;

@@ -10,6 +10,10 @@ namespace kerf {
 /// follows `key = value`: "is above 1000 MPa (allowed: 0.001 to 1000 MPa); did you mean MPa?".
 double read_number(const Node& node, const Parameter& parameter);
 
+/// `number` given in `unit`, in consistent units; throws as above when it is not a unit that `parameter` allows, or
+/// when the value is outside the parameter's range.
+double in_range(double number, std::string_view unit, const Parameter& parameter);
+
 /// What a file would hold for `value` (consistent units): `read_number` turns it back into the same double. In the
 /// parameter's own unit where that is possible.
 Node::Value write_number(double value, const Parameter& parameter);
