@@ -1,0 +1,48 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+
+#include "data/curve.hpp"
+#include "forward/scene/scene.hpp"
+#include "inverse/commands/commands.hpp"
+#include "models/base/document.hpp"
+#include "models/base/error.hpp"
+#include "models/base/units.hpp"
+
+namespace kerf::commands {
+namespace {
+
+void check_curve(const std::filesystem::path& file) {
+  const data::Curve curve = data::read_curve(file);
+  const double um = consistent_units_in("um");
+  std::size_t chip_ratios = 0;
+  for (const data::CurvePoint& point : curve.points) chip_ratios += point.chip_ratio ? 1 : 0;
+  fmt::print("{}: ok, a curve of {} points, depths {:g} to {:g} um, {} with a chip ratio\n", file.string(),
+             curve.points.size(), curve.points.front().depth / um, curve.points.back().depth / um, chip_ratios);
+  for (const std::string& note : curve.notes) fmt::print("  note: {}\n", note);
+}
+
+void check_scene(const Document& document) {
+  const forward::Scene scene = forward::read_scene(document);
+  fmt::print("{}: ok, a scene: {}\n", document.name(), scene.title);
+}
+
+void check(const std::filesystem::path& file) {
+  if (file.extension() != ".toml") return check_curve(file);
+  check_scene(Document::load(file));
+}
+
+}  // namespace
+
+void add_check(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("check", "Read a scene, a job or a curve and say whether it is sound");
+  auto* file = command->add_option("file", "a scene or job (.toml), or a measured curve (CSV)")->required();
+  command->callback([file, &exit_code] {
+    check(file->as<std::string>());
+    exit_code = static_cast<int>(ExitCode::success);
+  });
+}
+
+}  // namespace kerf::commands
