@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "forward/effects/edge_contact.hpp"
 #include "forward/mpm/crack.hpp"
 #include "forward/mpm/tool.hpp"
 #include "forward/mpm/transfer.hpp"
@@ -36,6 +37,12 @@ std::vector<Stage> plan(const Scene& scene) {
         [&scene, stiffness, shear_yield](State& state) {
           rub_rake_face(state, scene.tool.rake, *scene.friction, shear_yield, stiffness);
         });
+  if (scene.edge_contact) {
+    add("edge height", "the edge follows the freshly cut face",
+        [&scene](State& state) { follow_face(state, scene.cut.depth); });
+    add("edge", "the worn edge presses on the lower side",
+        [&scene, stiffness](State& state) { press_edge(state, *scene.edge_contact, stiffness); });
+  }
   add("spread", "marker forces go to the nodes they were interpolated from", spread_marker_forces);
   add("accelerate", "new grid velocities under the fixed boundary", accelerate);
   add("advance",

@@ -12,17 +12,16 @@ void move_tool(State& state, const Cut& cut) {
   state.contact_energy = 0.0;
 }
 
-namespace {
-
-/// A force of the tool on marker k of the chip's face, N/mm, with the work the moving tool does through it.
-void push_chip(State& state, std::size_t k, double x, double y) {
-  Face& face = state.crack.face[above];
+void push_face(State& state, Side side, std::size_t k, double x, double y) {
+  Face& face = state.crack.face[side];
   face.force_x[k] += x;
   face.force_y[k] += y;
   state.force.on_work_x += x;
   state.force.on_work_y += y;
-  state.work.tool += x * state.tool.speed * state.step;
+  state.work.tool += (x * state.tool.speed + y * state.tool.vertical_speed) * state.step;
 }
+
+namespace {
 
 /// Pressure around each marker, averaged over a cell to either side. What a single marker carries is not unique
 /// (several share the same nodes); what a cell carries is.
@@ -41,7 +40,7 @@ std::vector<double> cell_mean(const std::vector<double>& pressure, std::size_t r
 
 void press_rake_face(State& state, double rake, double stiffness) {
   Crack& crack = state.crack;
-  Face& face = crack.face[above];
+  const Face& face = crack.face[above];
   const double normal_x = std::cos(rake), normal_y = std::sin(rake);  // from the tool into the chip
   const double length = crack.spacing;
   crack.rake_pressure.assign(crack.size(), 0.0);
@@ -51,7 +50,7 @@ void press_rake_face(State& state, double rake, double stiffness) {
     if (distance >= 0.0) continue;
     const double pressure = -stiffness * distance;
     crack.rake_pressure[k] = pressure;
-    push_chip(state, k, pressure * length * normal_x, pressure * length * normal_y);
+    push_face(state, above, k, pressure * length * normal_x, pressure * length * normal_y);
     state.contact_energy += 0.5 * pressure * -distance * length;
     state.force.rake_normal += pressure * length;
     state.force.penetration = std::max(state.force.penetration, -distance);
@@ -73,12 +72,12 @@ void rub_rake_face(State& state, double rake, const Friction& friction, double s
     }
     const double ratio = std::min(friction.coefficient, friction.yield_cap * shear_yield / mean[k]);
     const double reach_of_spring = ratio * pressure / stiffness;
-    const double sliding =
-        state.step * ((face.velocity_x[k] - state.tool.speed) * along_x + face.velocity_y[k] * along_y);
+    const double sliding = state.step * ((face.velocity_x[k] - state.tool.speed) * along_x +
+                                         (face.velocity_y[k] - state.tool.vertical_speed) * along_y);
     const double trial = crack.rake_slip[k] + sliding;
     crack.rake_slip[k] = std::clamp(trial, -reach_of_spring, reach_of_spring);
     const double shear = -stiffness * crack.rake_slip[k];  // on the chip, up the face
-    push_chip(state, k, shear * length * along_x, shear * length * along_y);
+    push_face(state, above, k, shear * length * along_x, shear * length * along_y);
     state.work.friction -= shear * (trial - crack.rake_slip[k]) * length;
     state.contact_energy += 0.5 * stiffness * crack.rake_slip[k] * crack.rake_slip[k] * length;
     state.force.rake_tangential -= shear * length;

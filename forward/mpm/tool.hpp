@@ -11,6 +11,9 @@ namespace kerf::forward {
 /// Advances the tip with the velocity ramp and clears this step's tool force.
 void move_tool(State& state, const Cut& cut);
 
+/// A force of the tool on marker k of a face, N/mm, with the work the moving tool does through it.
+void push_face(State& state, Side side, std::size_t k, double x, double y);
+
 /// Rake face against the upper side: the half-plane through the tip with normal (cos alpha, sin alpha).
 void press_rake_face(State& state, double rake, double stiffness);
 
