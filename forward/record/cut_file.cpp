@@ -154,7 +154,8 @@ std::vector<Field> tool_fields(const Scene& scene, const Snapshot& snapshot) {
           {"tip_y", "mm", 1, {snapshot.tool_tip_y}},
           {"rake", "rad", 1, {scene.tool.rake}},
           {"depth", "mm", 1, {scene.cut.depth}},
-          {"cell", "mm", 1, {snapshot.cell}}};
+          {"cell", "mm", 1, {snapshot.cell}},
+          {"particle_spacing", "mm", 1, {scene.cell() / scene.resolution.particles_per_cell_side}}};
 }
 
 void write_text_attribute(hid_t owner, const char* name, const std::string& text) {

@@ -12,7 +12,7 @@ namespace kerf::forward {
 /// - /history: one entry per cell crossing: travel, F_c, F_t, forces per tool face, crack_lead, ...; ledger/*
 /// - /particles: position (n x 2), velocity (n x 3), equivalent_stress, pressure, plastic_strain; side: 1 chip, -1 base
 /// - /faces: upper, lower (m x 2), the faces of the crack
-/// - /tool: tip_x, tip_y, rake; depth, cell: what a picture of the chip needs
+/// - /tool: tip_x, tip_y, rake; depth, cell, particle_spacing: what a picture of the chip needs
 /// - attributes: title, code_version, scene (canonical text), result (JSON, see forward/record/result_json.hpp)
 ///
 /// Every dataset is in the solver's units (mm, MPa, N, tonne, s, rad) and says so in its attribute `unit`.

@@ -35,6 +35,9 @@ int run(int argc, char** argv) {
   int exit_code = 0;
   kerf::commands::add_check(app, exit_code);
   kerf::commands::add_list(app, exit_code);
+  kerf::commands::add_explain(app, exit_code);
+  kerf::commands::add_simulate(app, exit_code);
+  kerf::commands::add_report(app, exit_code);
 
   try {
     app.parse(argc, argv);

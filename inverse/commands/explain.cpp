@@ -1,0 +1,149 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "forward/mpm/window.hpp"
+#include "forward/plan.hpp"
+#include "inverse/commands/commands.hpp"
+
+namespace kerf::commands {
+namespace {
+
+using forward::Scene;
+using forward::Stage;
+using forward::State;
+
+constexpr double degrees = 57.29577951308232;
+
+/// In the order of forward::Particles::fields().
+constexpr std::array<const char*, 10> particle_fields{
+    "position x",          "position y",          "velocity x",          "velocity y",     "Kirchhoff stress xx",
+    "Kirchhoff stress yy", "Kirchhoff stress zz", "Kirchhoff stress xy", "plastic strain", "reference volume"};
+
+/// Seconds that each stage took over the first steps of the cut: a measurement, not a model.
+std::vector<double> time_stages(State& state, const std::vector<Stage>& stages, int steps) {
+  std::vector<double> seconds(stages.size(), 0.0);
+  for (int step = 0; step < steps; ++step) {
+    for (std::size_t i = 0; i < stages.size(); ++i) {
+      const auto begin = std::chrono::steady_clock::now();
+      stages[i].apply(state);
+      seconds[i] += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    }
+    state.time += state.step;
+  }
+  return seconds;
+}
+
+void print_cut(const Scene& scene) {
+  fmt::print("{}\n\n", scene.title);
+  fmt::print("A layer of {:g} mm is cut at {:g} m/s by a rigid tool with a rake angle of {:g} deg. The work is an\n",
+             scene.cut.depth, scene.cut.speed / 1e3, scene.tool.rake * degrees);
+  fmt::print(
+      "elastic-plastic solid in plane strain that separates along the plane y = 0; the cohesive law passes on\n");
+  fmt::print("at most {:g} MPa (mode I) and {:g} MPa (mode II), and takes {:g} and {:g} J/m^2 to break.\n\n",
+             scene.cohesive.mode_I->strength(), scene.cohesive.mode_II->strength(),
+             1e3 * scene.cohesive.mode_I->toughness(), 1e3 * scene.cohesive.mode_II->toughness());
+}
+
+void print_discretisation(const Scene& scene, const State& state) {
+  const auto& window = scene.window;
+  const int side = scene.resolution.particles_per_cell_side;
+  fmt::print("Discretisation\n");
+  fmt::print("  cells of {:g} mm, {} through the chip, {} x {} particles each: {} particles\n", scene.cell(),
+             scene.resolution.cells_through_chip, side, side, state.particles.begin[2]);
+  fmt::print("  window around the tip, in depths: {:g} ahead, {:g} behind, {:g} below, {:g} above; it travels along\n",
+             window.ahead, window.behind, window.below, window.above);
+  fmt::print("  time step {:.3g} us ({:g} of an elastic wave's transit of a cell)\n", 1e6 * state.step,
+             scene.resolution.courant_number);
+  // The mixed-mode zone is shorter still; this is the length over which mode I traction acts (Hillerborg).
+  const double zone = scene.material.plane_strain_modulus() * scene.cohesive.mode_I->toughness() /
+                      std::pow(scene.cohesive.mode_I->strength(), 2);
+  fmt::print("  the critical opening is {:.2g} cells, the elastic cohesive zone E'G/sigma^2 about {:.2g} cells\n\n",
+             scene.cohesive.mode_I->critical_opening() / scene.cell(), zone / scene.cell());
+}
+
+void print_stages(const std::vector<Stage>& stages, const std::vector<double>& seconds) {
+  double total = 0;
+  for (const double stage : seconds) total += stage;
+  fmt::print("One time step, in order (share of the time, measured now)\n");
+  for (std::size_t i = 0; i < stages.size(); ++i)
+    fmt::print("  {:>2}. {:<11}{:>4.0f} %   {}\n", i + 1, stages[i].name, 100 * seconds[i] / total, stages[i].does);
+  fmt::print("\n");
+}
+
+void print_memory(State& state) {
+  static_assert(std::tuple_size_v<decltype(state.particles.fields())> == particle_fields.size());
+  fmt::print("Each particle carries {} bytes, 8 for each of\n  ", 8 * particle_fields.size());
+  std::string list;
+  for (std::size_t i = 0; i < particle_fields.size(); ++i) {
+    const bool ends_line = i == 3 || i == 7;
+    list += particle_fields[i];
+    list += i + 1 == particle_fields.size() ? "\n" : ends_line ? ",\n  " : ", ";
+  }
+  fmt::print("{}The crack is followed by {} pairs of markers.\n\n", list, state.crack.size());
+}
+
+void print_absent(const Scene& scene) {
+  fmt::print("Not simulated\n");
+  if (!scene.friction) fmt::print("  friction on the rake face: the scene has no [friction]\n");
+  if (!scene.edge_contact)
+    fmt::print("  contact of the edge with the cut face: the scene has no [edge_contact], the tool is sharp\n");
+  if (!scene.pic_damping) fmt::print("  numerical damping: the scene has no [pic_damping]\n");
+  if (scene.material.hardening_modulus == 0) fmt::print("  hardening: hardening_modulus is zero, perfectly plastic\n");
+  fmt::print(
+      "  heat, rate dependence, a deforming or blunt tool, a crack that leaves its plane, contact of the chip\n");
+  fmt::print("  with itself: this solver has no such effects\n\n");
+}
+
+/// The ramp costs half its time; the cut may stop anywhere between the two travels.
+void print_cost(const Scene& scene, const State& state, double seconds_per_step) {
+  const auto steps_to = [&](double depths) {
+    return (depths * scene.cut.depth / scene.cut.speed + 0.5 * scene.cut.ramp) / state.step;
+  };
+  const auto particles = static_cast<double>(state.particles.begin[2]);
+  const double least = steps_to(std::min(scene.steady_state.not_before, scene.cut.travel));
+  const double most = steps_to(scene.cut.travel);
+  fmt::print("Expected cost\n");
+  fmt::print("  the cut stops between {:g} and {:g} depths of travel, once the standard error of F_c is below {:g} %\n",
+             std::min(scene.steady_state.not_before, scene.cut.travel), scene.cut.travel,
+             100 * scene.steady_state.tolerance);
+  fmt::print(
+      "  {:.3g} to {:.3g} steps, {:.2g} to {:.2g} particle-steps, {:.2g} to {:.2g} s at the speed measured now\n",
+      least, most, least * particles, most * particles, least * seconds_per_step, most * seconds_per_step);
+}
+
+void explain(const std::string& file) {
+  const Scene scene = forward::read_scene(Document::load(file));
+  State state = forward::lay_out(scene);
+  const std::vector<Stage> stages = forward::plan(scene);
+  constexpr int steps = 100;
+  const std::vector<double> seconds = time_stages(state, stages, steps);
+  double total = 0;
+  for (const double stage : seconds) total += stage;
+
+  print_cut(scene);
+  print_discretisation(scene, state);
+  print_stages(stages, seconds);
+  print_memory(state);
+  print_absent(scene);
+  print_cost(scene, state, total / steps);
+}
+
+}  // namespace
+
+void add_explain(CLI::App& app, int& exit_code) {
+  auto* command = app.add_subcommand("explain", "Say in plain English what a scene makes the solver do, and its cost");
+  const auto file = std::make_shared<std::string>();
+  command->add_option("scene", *file, "scene file (TOML)")->required();
+  command->callback([file, &exit_code] {
+    explain(*file);
+    exit_code = 0;
+  });
+}
+
+}  // namespace kerf::commands
