@@ -1,0 +1,138 @@
+#include <algorithm>
+#include <cmath>
+
+#include "inverse/optimiser.hpp"
+
+namespace kerf::inverse {
+namespace {
+
+constexpr double first_radius = 0.5;    // in search coordinates: a factor of 1.65
+constexpr double largest_radius = 1.0;  // log-linear slopes do not reach further
+constexpr int most_iterations = 60;
+
+/// Minimum of the local model no further than `radius` from its base in any coordinate.
+ModelMinimum propose(const Objective& objective, const LocalModel& model, double radius) {
+  const ParameterSpace& space = objective.space();
+  const Eigen::VectorXd centre = model.base().point;
+  const Eigen::VectorXd reach = Eigen::VectorXd::Constant(centre.size(), radius);
+  return minimise(model, objective.misfit(), space, centre, space.clamp(centre - reach), space.clamp(centre + reach));
+}
+
+/// Enough cuts in common to say which of two points is better.
+bool comparable(const Objective& objective, const CutMask& common) {
+  return static_cast<double>(count(common)) >=
+         (1.0 - objective.budget().failing_share) * static_cast<double>(objective.cuts());
+}
+
+/// A trust-region search that says what it does in terms of simulated cuts. Its inner problem, bounded least squares
+/// over the local model, is solved by Ceres; the outer loop is ours because a trial here is a batch of simulations, of
+/// which some may fail, and because the same runs must come back in the same order when a journal is replayed.
+class GaussNewton {
+ public:
+  GaussNewton(Objective& objective, const Evaluation& start)
+      : objective_(objective), model_(LocalModel::by_differences(objective, start)) {
+    objective_.trace("differences", here());
+  }
+
+  SearchResult search() {
+    try {
+      for (int i = 0; i < most_iterations && !done_; ++i) iterate();
+      if (!done_) stop(false, "no convergence within the iterations allowed");
+    } catch (const BudgetSpent&) {
+      stop(false, "the budget of runs is spent");
+    }
+    return {.best = here(), .converged = converged_, .reason = reason_, .model = model_};
+  }
+
+ private:
+  const Evaluation& here() const { return model_.base(); }
+
+  void stop(bool converged, const char* reason) {
+    done_ = true;
+    converged_ = converged;
+    reason_ = reason;
+  }
+
+  /// A decrease of chi^2 below this cannot be told from nothing.
+  double worthwhile() const {
+    return std::max(objective_.budget().tolerance, objective_.misfit().chi2_noise(here(), objective_.choice().noise));
+  }
+
+  void difference() {
+    model_ = LocalModel::by_differences(objective_, here());
+    objective_.trace("differences", here());
+  }
+
+  void iterate() {
+    const double known_chi2 = objective_.misfit().chi2(here(), model_.known());
+    const ModelMinimum bold = propose(objective_, model_, radius_);
+    const double promise = known_chi2 - bold.chi2;
+    if (promise <= worthwhile()) {
+      if (model_.is_fresh()) return stop(true, "no step promises a decrease that could be told from noise");
+      return difference();
+    }
+    std::vector<Eigen::VectorXd> points{bold.point};
+    const ModelMinimum careful = propose(objective_, model_, radius_ / 3);
+    if ((careful.point - bold.point).lpNorm<Eigen::Infinity>() > 0.05 * radius_) points.push_back(careful.point);
+    take_best(objective_.evaluate(points), promise);
+  }
+
+  void take_best(const std::vector<Evaluation>& trials, double promise) {
+    const Evaluation* best = nullptr;
+    double best_decrease = worthwhile();
+    for (const Evaluation& trial : trials) {
+      const CutMask common = both(here().usable, trial.usable);
+      if (!comparable(objective_, common)) continue;
+      const double decrease = objective_.misfit().chi2(here(), common) - objective_.misfit().chi2(trial, common);
+      if (decrease <= best_decrease) continue;
+      best_decrease = decrease;
+      best = &trial;
+    }
+    const double step = (trials.front().point - here().point).lpNorm<Eigen::Infinity>();
+    for (const Evaluation& trial : trials) model_.learn(trial);
+    if (!best) return refuse(step, promise, trials.front());
+    const bool new_branch = LocalModel::branches_differ(here(), *best);
+    if (best == &trials.front() && best_decrease > 0.75 * promise) radius_ = std::min(largest_radius, 2 * radius_);
+    if (best_decrease < 0.25 * promise) radius_ = std::max(0.5 * step, 2 * objective_.choice().step);
+    model_.move_to(*best);
+    objective_.trace("trial accepted", here());
+    if (new_branch) difference();
+  }
+
+  void refuse(double step, double promise, const Evaluation& trial) {
+    objective_.trace("trial refused", trial);
+    radius_ = step / 4;
+    if (radius_ >= objective_.choice().step / 2) {
+      if (!model_.is_fresh()) difference();
+      return;
+    }
+    if (!model_.is_fresh()) {
+      radius_ = 2 * objective_.choice().step;
+      return difference();
+    }
+    const bool at_noise = promise <= 10 * worthwhile();
+    stop(at_noise, at_noise ? "the steps left promise little and deliver less: the end of what the simulation resolves"
+                            : "steps that the slopes promise do not lower the misfit");
+  }
+
+  Objective& objective_;
+  LocalModel model_;
+  double radius_ = first_radius;
+  bool done_ = false, converged_ = false;
+  std::string reason_;
+};
+
+}  // namespace
+
+SearchResult gauss_newton(Objective& objective, const Evaluation& start) {
+  try {
+    return GaussNewton(objective, start).search();
+  } catch (const BudgetSpent&) {
+    return {.best = start,
+            .converged = false,
+            .reason = "the budget of runs is spent on the first differences",
+            .model = {}};
+  }
+}
+
+}  // namespace kerf::inverse

@@ -1,0 +1,111 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "models/base/document.hpp"
+#include "models/base/estimate.hpp"
+
+namespace kerf::inverse {
+
+/// What a measured cut and a simulated cut are compared by.
+enum class Observable : std::size_t { F_c, F_t, chip_ratio };
+inline constexpr std::size_t observable_count = 3;
+inline constexpr std::array<const char*, observable_count> observable_names{"F_c", "F_t", "chip_ratio"};
+
+/// One measured point of a curve. An observable that was not measured, or that the job does not use, is absent.
+struct MeasuredCut {
+  std::size_t curve = 0;                                           ///< index into Job::curves
+  std::size_t row = 0;                                             ///< line of the point in its file
+  double depth = 0;                                                ///< mm
+  double rake = 0;                                                 ///< rad
+  std::array<std::optional<Estimate>, observable_count> measured;  ///< N/mm, N/mm, 1
+};
+
+/// A number of the scene that the calibration is to find.
+struct FreeParameter {
+  std::string path;             ///< dotted path into the scene
+  std::string name;             ///< short name in results
+  std::string unit;             ///< unit in which it is shown, as the scene declares it
+  double lower = 0, upper = 0;  ///< consistent units
+  bool logarithmic = true;      ///< searched in ln(value); otherwise in value / (upper - lower)
+  std::optional<double> start;  ///< consistent units; without it a closed form is asked
+  bool key = false;             ///< the job has failed (exit code 6) when this one cannot be identified
+};
+
+/// path = factor * of, for every cut: strengths that follow the yield stress.
+struct Tie {
+  std::string path;
+  double factor = 1;
+  std::string of;
+};
+
+/// How much of the edge force F_b appears in F_c: nothing, or its Coulomb friction mu F_b (theory, Eq. (1)).
+enum class CuttingShare { none, friction };
+const char* name(CuttingShare share);
+
+/// A force F_b per unit width on the edge of the real tool that the simulated, sharp tool does not feel:
+/// F_t = F_t(simulated) + F_b, F_c = F_c(simulated) + share F_b. It enters linearly and costs no runs.
+struct EdgeForce {
+  CuttingShare cutting_share = CuttingShare::none;
+  double lower = 0, upper = std::numeric_limits<double>::infinity();  ///< N/mm
+  bool compare = false;                                               ///< also fit and report the other share
+};
+
+struct Budget {
+  std::size_t max_runs = 100;
+  int parallel = 2;
+  double tolerance = 0.02;      ///< decrease of chi^2 that is not worth another run
+  double failing_share = 0.34;  ///< of the cuts at the estimate; above it the calibration has failed (exit code 5)
+};
+
+struct OptimiserChoice {
+  std::string method = "gauss_newton";
+  double step = 0.04;    ///< of a difference, in search coordinates (ln(value), or the share of a linear range)
+  double noise = 0.001;  ///< relative roughness of a simulated force; smaller decreases are not believed
+};
+
+/// A file the job depends on: its name as the job writes it, and its bytes.
+struct InputFile {
+  std::string name;
+  std::string content;
+  std::string hash() const;
+};
+
+/// A calibration, fully read: nothing in it depends on the file system any more.
+struct Job {
+  std::string title;
+  InputFile source, scene_file;
+  std::vector<InputFile> curves;  ///< one per [[curve]]
+  std::vector<MeasuredCut> cuts;
+  Document scene;  ///< the base scene
+  std::vector<FreeParameter> free;
+  std::vector<Tie> ties;
+  std::vector<Observable> observables;
+  std::optional<EdgeForce> edge_force;
+  Budget budget;
+  OptimiserChoice optimiser;
+  double discrepancy = 0;  ///< relative error that the model is granted in every observable
+
+  /// SHA-256 of everything that decides the answer.
+  std::string identity() const;
+};
+
+/// Every block a job may hold, with its parameters.
+const std::vector<Block>& job_blocks();
+
+/// Where a file lies that a job (or the caller) names; used to read a job again from the copies in its folder.
+using Locate = std::function<std::filesystem::path(const std::string& name)>;
+
+/// Reads a job with its scene and its curves; paths in it are relative to the job's own folder. Every patched scene is
+/// read once, so that a wrong path, tie or bound is found before the first run. Throws InputError.
+Job read_job(const std::filesystem::path& file);
+Job read_job(const std::filesystem::path& file, const std::string& name, const Locate& locate);
+
+}  // namespace kerf::inverse

@@ -1,0 +1,97 @@
+#include "inverse/job.hpp"
+#include "inverse/optimiser.hpp"
+
+namespace kerf::inverse {
+namespace {
+
+// Its unit is that of the number at `path`, so it stays text until the scene is known.
+Parameter quantity(std::string key, std::string meaning) {
+  return text(std::move(key), std::move(meaning));
+}
+
+std::vector<std::string> observables() {
+  return {observable_names.begin(), observable_names.end()};
+}
+
+std::vector<Block> declare() {
+  return {
+      {.path = "",
+       .variant = "",
+       .meaning = "the calibration itself",
+       .parameters = {text("title", "what this calibration is about"),
+                      text("scene", "base scene whose parameters are to be found, a path relative to this file"),
+                      list("observables", "what simulated and measured cuts are compared by", observables())},
+       .required = true},
+      {.path = "curve",
+       .variant = "",
+       .meaning = "measured points; each one becomes a simulated cut of its depth and rake",
+       .parameters = {text("file", "CSV file with a unit in every column's header, a path relative to this file"),
+                      number("shallowest", "mm", 0, 1e3, "points at smaller depths are left out").if_given(),
+                      number("deepest", "mm", 0, 1e3, "points at greater depths are left out").if_given(),
+                      text("specimen", "only the points of this specimen").if_given()},
+       .required = true,
+       .repeated = true},
+      {.path = "free",
+       .variant = "",
+       .meaning = "a number of the scene that is to be found",
+       .parameters =
+           {text("path", "where it stands in the scene, such as \"material.yield_stress\""),
+            quantity("lower", "smallest value searched"), quantity("upper", "largest value searched"),
+            text("scale", "how the search steps: by factors, or by differences", {"log", "linear"}).or_else("log"),
+            quantity("start", "first value tried; without it a closed form is asked").if_given(),
+            text("name", "its name in results; the last part of the path if absent").if_given(),
+            flag("key", "exit with code 6 when the data cannot tell this parameter").or_else("false")},
+       .required = true,
+       .repeated = true},
+      {.path = "tie",
+       .variant = "",
+       .meaning = "a number of the scene that follows another one: path = equals * of",
+       .parameters = {text("path", "the number that follows"), number("equals", "1", 0, 1e9, "the factor"),
+                      text("of", "the number that leads")},
+       .repeated = true},
+      {.path = "edge_force",
+       .variant = "",
+       .meaning = "a force per width on the edge of the real tool that the simulated one, being sharp, does not feel; "
+                  "found along with the free parameters at no cost in runs",
+       .parameters = {text("cutting_share", "its part in the cutting force: none, or its friction mu F_b",
+                           {"none", "friction"})
+                          .or_else("friction"),
+                      number("lower", "N/mm", -1e6, 1e6, "smallest edge force").or_else("0 N/mm"),
+                      number("upper", "N/mm", -1e6, 1e6, "largest edge force").or_else("1000 N/mm"),
+                      flag("compare", "fit the other share as well and report both").or_else("true")}},
+      {.path = "budget",
+       .variant = "",
+       .meaning = "what the answer may cost",
+       .parameters = {number("max_runs", "1", 1, 1e7, "simulated cuts at most").or_else("100"),
+                      number("parallel", "1", 1, 4096, "simulations at a time").or_else("2"),
+                      number("tolerance", "1", 1e-9, 10, "stop when chi^2 is not expected to fall by more than this")
+                          .or_else("0.02"),
+                      number("failing_share", "1", 0, 1,
+                             "share of the cuts whose simulation may fail at the estimate (above it: exit code 5)")
+                          .or_else("0.34")},
+       .required = true},
+      {.path = "optimiser",
+       .variant = "",
+       .meaning = "how the minimum is looked for",
+       .parameters = {text("method", "the search", optimiser_names()).or_else("gauss_newton"),
+                      number("step", "1", 1e-8, 0.5, "difference step: change of ln(value), or share of a linear range")
+                          .or_else("0.04"),
+                      number("noise", "1", 0, 0.5,
+                             "relative roughness of a simulated force; smaller gains are not believed")
+                          .or_else("0.001")},
+       .required = true},
+      {.path = "discrepancy",
+       .variant = "",
+       .meaning = "error granted to the model itself, added to the measured standard errors",
+       .parameters = {number("relative", "1", 0, 1, "share of every measured value")}},
+  };
+}
+
+}  // namespace
+
+const std::vector<Block>& job_blocks() {
+  static const std::vector<Block> blocks = declare();
+  return blocks;
+}
+
+}  // namespace kerf::inverse

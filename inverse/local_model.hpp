@@ -1,0 +1,76 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "inverse/objective.hpp"
+
+namespace kerf::inverse {
+
+/// The observables near a simulated point: ln F_c, F_t and ln(chip ratio) linear in the search coordinates. Slopes come
+/// from differences of simulations and are then improved by every further simulation (Broyden's update). A difference
+/// never spans two branches of the cut (touching, bending), where slopes mean nothing.
+class LocalModel {
+ public:
+  /// Slopes by one-sided differences inside the bounds, all as one batch. A run that fails or lands on another branch
+  /// is tried again on the other side and at half the step; a cut with a slope still missing is left out of the model.
+  /// Throws BudgetSpent.
+  static LocalModel by_differences(Objective& objective, const Evaluation& base);
+
+  const Evaluation& base() const { return base_; }
+  /// Slopes were differenced at the present base.
+  bool is_fresh() const { return fresh_; }
+  /// Cuts that the model predicts.
+  CutMask known() const { return both(has_slopes_, base_.usable); }
+
+  Observations predict(const Eigen::VectorXd& point) const;
+
+  /// One observable of one cut; T is double or an automatic derivative.
+  template <class T>
+  T predict(Eigen::Index cut, Eigen::Index observable, const T* const* point) const {
+    using std::exp;
+    const auto& slopes = slopes_[static_cast<std::size_t>(observable)];
+    T change(0.0);
+    for (Eigen::Index j = 0; j < slopes.cols(); ++j) change += slopes(cut, j) * (point[j][0] - base_.point[j]);
+    const double here = base_.simulated(cut, observable);
+    return is_logarithmic(observable) ? here * exp(change) : here + change;
+  }
+
+  /// Makes the model agree with `other` by the smallest change of the slopes.
+  void learn(const Evaluation& other);
+  /// The same slopes about another simulated point.
+  void move_to(const Evaluation& other);
+
+  /// True when a cut usable at both points is on different branches.
+  static bool branches_differ(const Evaluation& a, const Evaluation& b);
+
+ private:
+  explicit LocalModel(Evaluation base);
+  static bool is_logarithmic(Eigen::Index observable) {
+    return observable != static_cast<Eigen::Index>(Observable::F_t);
+  }
+  /// Change of one transformed observable of `cut` between the base and a run.
+  double change(Eigen::Index cut, Eigen::Index observable, double simulated) const;
+
+  Evaluation base_;
+  std::array<Eigen::MatrixXd, observable_count> slopes_;  ///< cuts x parameters
+  CutMask has_slopes_;
+  bool fresh_ = true;
+};
+
+/// The minimum of a misfit over a local model.
+struct ModelMinimum {
+  Eigen::VectorXd point;
+  double edge_force = 0;
+  double chi2 = 0;  ///< over the cuts the model knows
+};
+
+/// Least squares over (point, F_b) inside [lower, upper] and the bounds of F_b, by Ceres. `fixed` names a coordinate
+/// that stays as it is in `start`; `fixed_edge` holds F_b.
+ModelMinimum minimise(const LocalModel& model, const Misfit& misfit, const ParameterSpace& space,
+                      const Eigen::VectorXd& start, const Eigen::VectorXd& lower, const Eigen::VectorXd& upper,
+                      std::optional<Eigen::Index> fixed = {}, std::optional<double> fixed_edge = {});
+
+}  // namespace kerf::inverse

@@ -1,0 +1,143 @@
+#include "inverse/misfit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "models/base/error.hpp"
+
+namespace kerf::inverse {
+namespace {
+
+constexpr Eigen::Index F_c = static_cast<Eigen::Index>(Observable::F_c);
+constexpr Eigen::Index F_t = static_cast<Eigen::Index>(Observable::F_t);
+constexpr Eigen::Index chip_ratio = static_cast<Eigen::Index>(Observable::chip_ratio);
+
+Eigen::Index rows(const std::vector<MeasuredCut>& cuts) {
+  return static_cast<Eigen::Index>(cuts.size());
+}
+
+}  // namespace
+
+CutMask both(const CutMask& a, const CutMask& b) {
+  CutMask result(a.size());
+  for (std::size_t i = 0; i < a.size(); ++i) result[i] = a[i] && b[i];
+  return result;
+}
+
+std::size_t count(const CutMask& mask) {
+  return static_cast<std::size_t>(std::count(mask.begin(), mask.end(), true));
+}
+
+Eigen::RowVectorXd observations(const RunRecord& run) {
+  Eigen::RowVectorXd row(static_cast<Eigen::Index>(observable_count));
+  row[F_c] = run.F_c.value;
+  row[F_t] = run.F_t.value;
+  row[chip_ratio] = run.chip_ratio.value;
+  return row;
+}
+
+Misfit::Misfit(const Job& job, const ParameterSpace& space) : space_(&space), edge_force_(job.edge_force) {
+  const auto columns = static_cast<Eigen::Index>(observable_count);
+  measured_ = weights_ = errors_ = Observations::Zero(rows(job.cuts), columns);
+  for (Eigen::Index i = 0; i < rows(job.cuts); ++i) {
+    const MeasuredCut& cut = job.cuts[static_cast<std::size_t>(i)];
+    for (Eigen::Index k = 0; k < columns; ++k) {
+      const std::optional<Estimate>& measured = cut.measured[static_cast<std::size_t>(k)];
+      if (!measured) continue;
+      measured_(i, k) = measured->value;
+      errors_(i, k) = std::hypot(measured->standard_error, job.discrepancy * measured->value);
+      if (!(errors_(i, k) > 0))
+        throw InputError(
+            fmt::format("{}:{}: {} has no standard error to weigh it by; add a column {}_sd, or give [discrepancy] "
+                        "relative in the job",
+                        job.curves[cut.curve].name, cut.row, observable_names[static_cast<std::size_t>(k)],
+                        k == F_c   ? "Fc"
+                        : k == F_t ? "Ft"
+                                   : "chip_ratio"));
+      weights_(i, k) = 1.0 / errors_(i, k);
+    }
+  }
+}
+
+bool Misfit::is_usable(std::size_t cut, const RunRecord& run) const {
+  if (!run.accepted) return false;
+  const Eigen::RowVectorXd simulated = observations(run);
+  for (Eigen::Index k = 0; k < simulated.size(); ++k) {
+    if (weights_(static_cast<Eigen::Index>(cut), k) == 0) continue;
+    if (!std::isfinite(simulated[k]) || (k != F_t && simulated[k] <= 0)) return false;
+  }
+  return true;
+}
+
+void Misfit::include_simulation_errors(const Evaluation& reference) {
+  for (Eigen::Index i = 0; i < weights_.rows(); ++i) {
+    if (!reference.usable[static_cast<std::size_t>(i)]) continue;
+    const RunRecord& run = reference.runs[static_cast<std::size_t>(i)];
+    const std::array<double, observable_count> simulated{run.F_c.standard_error, run.F_t.standard_error,
+                                                         run.chip_ratio.standard_error};
+    for (Eigen::Index k = 0; k < weights_.cols(); ++k) {
+      const double error = simulated[static_cast<std::size_t>(k)];
+      if (errors_(i, k) > 0 && std::isfinite(error)) weights_(i, k) = 1.0 / std::hypot(errors_(i, k), error);
+    }
+  }
+}
+
+Misfit Misfit::with_share(CuttingShare share) const {
+  Misfit other = *this;
+  if (other.edge_force_) other.edge_force_->cutting_share = share;
+  return other;
+}
+
+double Misfit::edge_share(Observable observable, double friction) const {
+  if (!edge_force_ || observable == Observable::chip_ratio) return 0;
+  if (observable == Observable::F_t) return 1;
+  return edge_force_->cutting_share == CuttingShare::friction ? friction : 0;
+}
+
+Residuals Misfit::residuals(const Observations& simulated, const Eigen::VectorXd& point, const CutMask& mask) const {
+  const double friction = space_->friction(point);
+  const Eigen::Index n = weights_.rows(), m = weights_.cols();
+  Eigen::VectorXd sharp = Eigen::VectorXd::Zero(n * m), edge = Eigen::VectorXd::Zero(n * m);
+  Residuals result;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (!mask[static_cast<std::size_t>(i)]) continue;
+    for (Eigen::Index k = 0; k < m; ++k) {
+      if (weights_(i, k) == 0) continue;
+      sharp[i * m + k] = (simulated(i, k) - measured_(i, k)) * weights_(i, k);
+      edge[i * m + k] = edge_share(static_cast<Observable>(k), friction) * weights_(i, k);
+      ++result.compared;
+    }
+  }
+  if (edge_force_) {
+    const double best = edge.squaredNorm() > 0 ? -edge.dot(sharp) / edge.squaredNorm() : 0;
+    result.edge_force = std::clamp(best, edge_force_->lower, edge_force_->upper);
+  }
+  result.weighted = sharp + result.edge_force * edge;
+  result.chi2 = result.weighted.squaredNorm();
+  return result;
+}
+
+Residuals Misfit::residuals(const Evaluation& evaluation) const {
+  return residuals(evaluation.simulated, evaluation.point, evaluation.usable);
+}
+
+double Misfit::chi2(const Evaluation& evaluation, const CutMask& mask) const {
+  return residuals(evaluation.simulated, evaluation.point, mask).chi2;
+}
+
+double Misfit::chi2_noise(const Evaluation& evaluation, double noise) const {
+  const Residuals here = residuals(evaluation);
+  double variance = 0;
+  for (Eigen::Index i = 0; i < weights_.rows(); ++i)
+    for (Eigen::Index k = 0; k < weights_.cols(); ++k) {
+      if (!evaluation.usable[static_cast<std::size_t>(i)]) continue;
+      const double error = noise * evaluation.simulated(i, k) * weights_(i, k);
+      const double r = here.weighted[i * weights_.cols() + k];
+      variance += 2 * (4 * r * r * error * error + 2 * error * error * error * error);
+    }
+  return std::sqrt(variance);
+}
+
+}  // namespace kerf::inverse

@@ -1,0 +1,66 @@
+#include "inverse/objective.hpp"
+
+#include <fmt/format.h>
+
+#include "models/base/units.hpp"
+
+namespace kerf::inverse {
+
+Objective::Objective(const Job& job, const ParameterSpace& space, Misfit& misfit, RunDatabase& database,
+                     std::size_t max_runs)
+    : job_(job), space_(space), misfit_(misfit), database_(database), max_runs_(max_runs) {}
+
+RunRequest Objective::request(const Eigen::VectorXd& point, std::size_t cut) const {
+  std::string label = fmt::format("depth {:.4g} mm", job_.cuts[cut].depth);
+  for (Eigen::Index j = 0; j < space_.dimension(); ++j) {
+    const FreeParameter& parameter = space_.parameters()[static_cast<std::size_t>(j)];
+    label +=
+        fmt::format(", {} {:.4g}{}{}", parameter.name, space_.value(j, point[j]) / consistent_units_in(parameter.unit),
+                    parameter.unit == "1" ? "" : " ", parameter.unit == "1" ? "" : parameter.unit);
+  }
+  return {.scene = space_.scene(point, job_.cuts[cut]), .label = std::move(label), .cut = cut};
+}
+
+std::vector<RunRecord> Objective::simulate(const std::vector<Probe>& probes) {
+  std::vector<RunRequest> requests;
+  for (const Probe& probe : probes) requests.push_back(request(probe.point, probe.cut));
+  if (database_.runs_with(requests) > max_runs_) throw BudgetSpent{};
+  return database_.run(requests);
+}
+
+std::vector<Evaluation> Objective::evaluate(const std::vector<Eigen::VectorXd>& points) {
+  std::vector<Probe> probes;
+  for (const Eigen::VectorXd& point : points)
+    for (std::size_t cut = 0; cut < cuts(); ++cut) probes.push_back({point, cut});
+  const std::vector<RunRecord> records = simulate(probes);
+  std::vector<Evaluation> evaluations;
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    Evaluation evaluation;
+    evaluation.point = points[p];
+    evaluation.simulated.resize(static_cast<Eigen::Index>(cuts()), Eigen::NoChange);
+    for (std::size_t cut = 0; cut < cuts(); ++cut) {
+      evaluation.runs.push_back(records[p * cuts() + cut]);
+      evaluation.usable.push_back(misfit_.is_usable(cut, evaluation.runs.back()));
+      evaluation.simulated.row(static_cast<Eigen::Index>(cut)) = observations(evaluation.runs.back());
+    }
+    evaluations.push_back(std::move(evaluation));
+  }
+  return evaluations;
+}
+
+void Objective::trace(std::string what, const Evaluation& at) {
+  const Residuals residuals = misfit_.residuals(at);
+  trace_.push_back({.what = std::move(what),
+                    .runs = database_.runs(),
+                    .chi2 = residuals.chi2,
+                    .point = at.point,
+                    .edge_force = residuals.edge_force,
+                    .failed_cuts = cuts() - count(at.usable)});
+  if (on_trace) on_trace(trace_.back());
+}
+
+double Objective::failing_share(const Evaluation& evaluation) const {
+  return 1.0 - static_cast<double>(count(evaluation.usable)) / static_cast<double>(cuts());
+}
+
+}  // namespace kerf::inverse

@@ -1,0 +1,34 @@
+#include "inverse/optimiser.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace kerf::inverse {
+
+const std::vector<Optimiser>& optimisers() {
+  static const std::vector<Optimiser> all{
+      {"gauss_newton", "bounded Gauss-Newton in a trust region; differences and trials in parallel, few runs",
+       gauss_newton},
+      {"levenberg_marquardt", "Ceres' bounded Levenberg-Marquardt with parallel differences at every step",
+       levenberg_marquardt},
+      {"bobyqa", "NLopt's BOBYQA: quadratic models of chi^2, no differences", bobyqa},
+      {"sbplx", "NLopt's Subplex: simplex search on subspaces, patient with noise", sbplx},
+      {"crs2", "NLopt's controlled random search: global, and dear", crs2},
+  };
+  return all;
+}
+
+std::vector<std::string> optimiser_names() {
+  std::vector<std::string> names;
+  for (const Optimiser& optimiser : optimisers()) names.push_back(optimiser.name);
+  return names;
+}
+
+const Optimiser& find_optimiser(const std::string& name) {
+  const auto found = std::find_if(optimisers().begin(), optimisers().end(),
+                                  [&](const Optimiser& optimiser) { return optimiser.name == name; });
+  if (found == optimisers().end()) throw std::invalid_argument("there is no optimiser \"" + name + "\"");
+  return *found;
+}
+
+}  // namespace kerf::inverse

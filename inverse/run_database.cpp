@@ -1,0 +1,149 @@
+#include "inverse/run_database.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <thread>
+
+#include "forward/scene/scene.hpp"
+#include "models/base/atomic_file.hpp"
+#include "models/base/error.hpp"
+
+namespace kerf::inverse {
+namespace {
+
+// A whole result holds a picture of some hundred kilobytes; the runs at the final estimate are among the last of these.
+constexpr std::size_t results_kept = 64;
+
+}  // namespace
+
+struct RunDatabase::Task {
+  std::string key;
+  const RunRequest* request;
+  forward::Scene scene;
+};
+
+RunDatabase::RunDatabase(Journal& journal, std::string code, Simulator simulate, int parallel, RunEvents events)
+    : journal_(journal),
+      code_(std::move(code)),
+      simulate_(std::move(simulate)),
+      parallel_(std::max(1, parallel)),
+      events_(std::move(events)) {
+  double session = 0;
+  for (const Journal::Json& line : journal_.lines()) {
+    if (line.contains("session")) {
+      earlier_seconds_ += session;
+      session = 0;
+    }
+    if (!line.contains("run")) continue;
+    RunRecord record = record_from_json(line.at("run"));
+    session = std::max(session, line.at("elapsed_s").get<double>());
+    seconds_[line.at("cut").get<std::size_t>()] = record.wall_seconds;
+    known_.emplace(line.at("key").get<std::string>(), std::move(record));
+  }
+  earlier_seconds_ += session;
+  journal_.append({{"session", code_}});
+}
+
+std::string RunDatabase::key(const Document& scene) const {
+  return sha256(code_ + '\n' + scene.canonical());
+}
+
+std::size_t RunDatabase::runs_with(const std::vector<RunRequest>& requests) const {
+  std::set<std::string> all = asked_;
+  for (const RunRequest& request : requests) all.insert(key(request.scene));
+  return all.size();
+}
+
+std::size_t RunDatabase::failed() const {
+  return static_cast<std::size_t>(
+      std::count_if(asked_.begin(), asked_.end(), [&](const std::string& key) { return !known_.at(key).accepted; }));
+}
+
+std::optional<forward::CutResult> RunDatabase::recent(const Document& scene) const {
+  const std::string wanted = key(scene);
+  const auto found =
+      std::find_if(recent_.begin(), recent_.end(), [&](const auto& kept) { return kept.first == wanted; });
+  if (found == recent_.end()) return std::nullopt;
+  return found->second;
+}
+
+double RunDatabase::wall_seconds() const {
+  return earlier_seconds_ + std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+}
+
+double RunDatabase::expected_seconds(std::size_t cut) const {
+  if (const auto found = seconds_.find(cut); found != seconds_.end()) return found->second;
+  return seconds_.empty() ? 0 : seconds_.begin()->second;
+}
+
+std::vector<RunRecord> RunDatabase::run(const std::vector<RunRequest>& requests) {
+  std::vector<std::string> keys;
+  std::vector<Task> tasks;
+  std::set<std::string> planned;
+  for (const RunRequest& request : requests) {
+    keys.push_back(key(request.scene));
+    if (known_.contains(keys.back()) || !planned.insert(keys.back()).second) continue;
+    try {
+      tasks.push_back({keys.back(), &request, forward::read_scene(request.scene)});
+    } catch (const InputError& error) {
+      known_.emplace(keys.back(), refused(error.what()));
+    }
+  }
+  if (!tasks.empty()) simulate_all(tasks);
+  std::vector<RunRecord> records;
+  for (const std::string& key : keys) {
+    asked_.insert(key);
+    records.push_back(known_.at(key));
+  }
+  return records;
+}
+
+void RunDatabase::simulate_all(std::vector<Task>& tasks) {
+  std::stable_sort(tasks.begin(), tasks.end(), [&](const Task& a, const Task& b) {
+    return expected_seconds(a.request->cut) > expected_seconds(b.request->cut);
+  });
+  if (events_.batch_begins) {
+    double total = 0;
+    for (const Task& task : tasks) total += expected_seconds(task.request->cut);
+    events_.batch_begins(tasks.size(), total / std::min<double>(parallel_, static_cast<double>(tasks.size())));
+  }
+  std::atomic<std::size_t> next = 0;
+  std::exception_ptr failure;
+  const auto work = [&] {
+    for (std::size_t i = next++; i < tasks.size(); i = next++) {
+      try {
+        finish(tasks[i], simulate_(tasks[i].scene));
+      } catch (...) {
+        const std::lock_guard lock(finishing_);
+        if (!failure) failure = std::current_exception();
+        next = tasks.size();
+      }
+    }
+  };
+  {
+    std::vector<std::jthread> pool;
+    for (int i = 1; i < parallel_ && static_cast<std::size_t>(i) < tasks.size(); ++i) pool.emplace_back(work);
+    work();
+  }
+  if (failure) std::rethrow_exception(failure);
+}
+
+void RunDatabase::finish(Task& task, forward::CutResult result) {
+  const RunRecord record = summarise(result);
+  const std::lock_guard lock(finishing_);
+  const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+  journal_.append({{"key", task.key},
+                   {"cut", task.request->cut},
+                   {"label", task.request->label},
+                   {"elapsed_s", elapsed},
+                   {"run", to_json(record)}});
+  known_.emplace(task.key, record);
+  seconds_[task.request->cut] = record.wall_seconds;
+  ++simulated_;
+  recent_.emplace_back(task.key, std::move(result));
+  if (recent_.size() > results_kept) recent_.pop_front();
+  if (events_.run_ends) events_.run_ends(*task.request, record);
+}
+
+}  // namespace kerf::inverse

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <chrono>
+#include <deque>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "inverse/journal.hpp"
+#include "inverse/run_record.hpp"
+#include "models/base/document.hpp"
+
+namespace kerf::inverse {
+
+/// How a cut is simulated: forward::run in earnest, anything quick in a test. Called by several threads at once.
+using Simulator = std::function<forward::CutResult(const forward::Scene&)>;
+
+/// Thrown by a simulator that was told to stop: the run is abandoned, not remembered.
+struct Interrupted {};
+
+/// One cut to simulate; `label` is for the eyes of the user, `cut` groups runs of about equal cost.
+struct RunRequest {
+  Document scene;
+  std::string label;
+  std::size_t cut = 0;
+};
+
+/// Told about every run as it ends, and about batches as they begin.
+struct RunEvents {
+  std::function<void(std::size_t new_runs, double expected_seconds)> batch_begins;
+  std::function<void(const RunRequest&, const RunRecord&)> run_ends;
+};
+
+/// Every simulated cut, keyed by what was simulated: SHA-256 of the resolved scene and of the code that simulates. A
+/// scene is never simulated twice; what the journal holds is taken from there, so a resumed calibration replays.
+class RunDatabase {
+ public:
+  /// `journal` outlives the database. `code` names the code, `parallel` >= 1 is the number of runs at a time.
+  RunDatabase(Journal& journal, std::string code, Simulator simulate, int parallel, RunEvents events = {});
+
+  /// The records of all requests, in their order. Missing ones are simulated, longest first; the order in which they
+  /// finish influences nothing. Rethrows what a simulator throws, after the other runs under way have ended.
+  std::vector<RunRecord> run(const std::vector<RunRequest>& requests);
+
+  /// Distinct runs asked for so far, and what that number would become with `requests`: the count a budget limits.
+  /// It does not depend on how many came from the journal.
+  std::size_t runs() const { return asked_.size(); }
+  std::size_t runs_with(const std::vector<RunRequest>& requests) const;
+
+  /// Simulated by this process, and failed among all asked for.
+  std::size_t simulated() const { return simulated_; }
+  std::size_t failed() const;
+
+  /// The whole result of a run of this process, while it is still in memory.
+  std::optional<forward::CutResult> recent(const Document& scene) const;
+
+  std::string key(const Document& scene) const;
+
+  /// Wall time of this and of all earlier sessions on the journal, s.
+  double wall_seconds() const;
+
+ private:
+  struct Task;
+  void simulate_all(std::vector<Task>& tasks);
+  void finish(Task& task, forward::CutResult result);
+  double expected_seconds(std::size_t cut) const;
+
+  Journal& journal_;
+  std::string code_;
+  Simulator simulate_;
+  int parallel_;
+  RunEvents events_;
+  std::map<std::string, RunRecord> known_;
+  std::set<std::string> asked_;
+  std::map<std::size_t, double> seconds_;  ///< last wall time of each cut
+  std::deque<std::pair<std::string, forward::CutResult>> recent_;
+  std::size_t simulated_ = 0;
+  double earlier_seconds_ = 0;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  std::mutex finishing_;
+};
+
+}  // namespace kerf::inverse

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "forward/run.hpp"
+
+namespace kerf::inverse {
+
+/// What a calibration remembers of one simulated cut: everything but its history and its picture. A run that failed is
+/// a value too (`accepted` false, `refusals` in words).
+struct RunRecord {
+  Estimate F_c, F_t;        ///< N/mm
+  Estimate chip_ratio;      ///< chip thickness / depth of cut
+  Estimate chip_curvature;  ///< 1/mm
+  Estimate crack_lead;      ///< mm
+  forward::Branch branch = forward::Branch::touching;
+  double mode_I_fraction = 0;
+  double fracture_energy_ratio = 0;
+  double deepest_penetration = 0;  ///< cells
+  bool steady = false;
+  bool accepted = false;
+  std::vector<std::string> refusals;
+  forward::Ledger ledger;
+  double wall_seconds = 0;
+};
+
+RunRecord summarise(const forward::CutResult& result);
+
+/// A run that never started because the patched scene was refused by its reader.
+RunRecord refused(std::string cause);
+
+/// JSON in which every double survives the round trip bitwise; what is not finite is written as text.
+nlohmann::ordered_json to_json(const RunRecord& record);
+/// Throws nlohmann::json::exception when `json` does not hold a record.
+RunRecord record_from_json(const nlohmann::ordered_json& json);
+
+}  // namespace kerf::inverse
