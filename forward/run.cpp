@@ -44,7 +44,7 @@ CutResult run(const Scene& scene, const std::function<bool(const Progress&)>& pr
     result.refusals.emplace_back("broke down: a particle left the grid or its position is not a number");
   result.cost.wall_seconds = elapsed();
   summarise(result, recorder, state, scene);
-  judge(result);
+  judge(result, scene);
   return result;
 }
 

@@ -53,6 +53,7 @@ struct CutResult {
   Estimate chip_ratio;       ///< chip thickness / depth of cut
   Estimate chip_curvature;   ///< 1/mm; positive curls away from the tool
   Estimate crack_lead;       ///< mm from the tool tip to the foremost broken pair
+  double process_zone = 0;   ///< mm of crack path along which unbroken pairs have used over 5 % of their toughness
   Branch branch = Branch::touching;
   double mode_I_fraction = 0;
   double fracture_energy_ratio = 0;  ///< booked energy per new area over the law's

@@ -15,6 +15,12 @@ inline void store(double* to, Lanes values) {
   using Unaligned = double __attribute__((vector_size(64), aligned(8), may_alias));
   *reinterpret_cast<Unaligned*>(to) = values;
 }
+/// Four doubles: the masses of a row of three nodes and one over-read.
+using Quad = double __attribute__((vector_size(32)));
+inline void add_row(double* to, Quad values) {
+  using Unaligned = double __attribute__((vector_size(32), aligned(8), may_alias));
+  *reinterpret_cast<Unaligned*>(to) += values;
+}
 inline Lanes pairs(double x, double y) {
   return Lanes{x, y, x, y, x, y, 0.0, 0.0};
 }

@@ -35,14 +35,15 @@ struct VelocityField {
 /// The regular grid that travels with the tool in whole cells. Node (i, j) stands at origin + cell (i, j).
 struct Grid {
   int columns = 0, rows = 0;
-  double cell = 0, origin_x = 0, origin_y = 0;
+  double cell = 0, inverse_cell = 0, origin_x = 0, origin_y = 0;
   std::array<VelocityField, 2> side;
 
+  std::size_t nodes() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
   std::size_t node(int i, int j) const {
     return static_cast<std::size_t>(j) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(i);
   }
-  double column_of(double x) const { return (x - origin_x) / cell; }
-  double row_of(double y) const { return (y - origin_y) / cell; }
+  double column_of(double x) const { return (x - origin_x) * inverse_cell; }
+  double row_of(double y) const { return (y - origin_y) * inverse_cell; }
   /// True when all nodes that a point at these grid coordinates touches exist (false for NaN).
   bool holds(double column, double row) const {
     return column >= 1.0 && row >= 1.0 && column < columns - 2.0 && row < rows - 2.0;

@@ -16,13 +16,11 @@ void add_momentum(VelocityField& field, const Grid& grid, const Spline& sx, cons
                   double velocity_x, double velocity_y) {
   const Lanes weights = sx.row_weights();
   const Lanes momentum = mass * weights * pairs(velocity_x, velocity_y);
-  const double m0 = mass * weights[0], m1 = mass * weights[2], m2 = mass * weights[4];
+  const Quad masses = mass * Quad{weights[0], weights[2], weights[4], 0.0};
   for (int row = 0; row < 3; ++row) {
     const std::size_t node = grid.node(sx.base, sy.base + row);
     const double w = sy.weight(row);
-    field.mass[node] += w * m0;
-    field.mass[node + 1] += w * m1;
-    field.mass[node + 2] += w * m2;
+    add_row(&field.mass[node], w * masses);
     double* to = &field.momentum[2 * node];
     store(to, load(to) + w * momentum);
   }
@@ -56,7 +54,7 @@ void gather_momentum(State& state) {
 void project_velocity(State& state) {
   for (VelocityField& field : state.grid.side) {
     clear(field.force);
-    const std::size_t count = field.mass.size();
+    const std::size_t count = state.grid.nodes();
     for (std::size_t node = 0; node < count; ++node) {
       const double inverse = field.mass[node] > state.smallest_mass ? 1.0 / field.mass[node] : 0.0;
       field.velocity[2 * node] = field.momentum[2 * node] * inverse;
@@ -119,7 +117,7 @@ void update_stress(State& state, const laws::J2& material) {
 void accelerate(State& state) {
   const double dt = state.step;
   for (VelocityField& field : state.grid.side) {
-    const std::size_t count = field.mass.size();
+    const std::size_t count = state.grid.nodes();
     for (std::size_t node = 0; node < count; ++node) {
       const double impulse = field.mass[node] > state.smallest_mass ? dt / field.mass[node] : 0.0;
       for (std::size_t k = 2 * node; k < 2 * node + 2; ++k) {

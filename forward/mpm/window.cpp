@@ -110,7 +110,7 @@ void sort_into_batches(State& state, const Scene& scene, const std::vector<Side>
   const Grid& grid = state.grid;
   const double left = grid.origin_x + margin * grid.cell;
   const double top = scene.window.above * scene.cut.depth;
-  const auto cells = static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows);
+  const std::size_t cells = grid.nodes();
   std::vector<std::size_t> bin(p.size());
   std::vector<std::size_t> start(2 * cells + 1, 0);
   constexpr auto nowhere = static_cast<std::size_t>(-1);
@@ -167,15 +167,16 @@ State lay_out(const Scene& scene) {
   const int through = scene.resolution.cells_through_chip;
   const auto cells = [&](double depths) { return static_cast<int>(std::lround(depths * through)); };
   grid.cell = scene.cell();
+  grid.inverse_cell = 1.0 / grid.cell;
   grid.columns = cells(scene.window.behind) + cells(scene.window.ahead) + 2 * margin;
   grid.rows = cells(scene.window.below) + cells(scene.window.above) + 2 * margin;
   grid.origin_x = -(cells(scene.window.behind) + margin) * grid.cell;
   // Two node rows at and below the block's lower end hold it.
   grid.origin_y = -(cells(scene.window.below) + 1) * grid.cell;
-  const auto nodes = static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows);
+  const std::size_t nodes = grid.nodes();
   constexpr std::size_t overread = lane_count;  // a row of three nodes is read as eight numbers
   for (VelocityField& field : grid.side) {
-    field.mass.assign(nodes, 0.0);
+    field.mass.assign(nodes + overread, 0.0);
     for (auto* values : {&field.momentum, &field.velocity, &field.next_velocity, &field.change, &field.force})
       values->assign(2 * nodes + overread, 0.0);
   }

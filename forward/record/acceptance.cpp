@@ -2,10 +2,28 @@
 
 #include <fmt/format.h>
 
-namespace kerf::forward {
+#include <algorithm>
+#include <cmath>
 
-void judge(CutResult& result) {
+namespace kerf::forward {
+namespace {
+
+// Coarser grids let the crack run ahead of the tool where a finer one keeps it at the tip (h = 1.5 mm of the
+// verification polymer: half the force at 0.24 cells per critical opening).
+constexpr double smallest_opening = 0.35;
+
+}  // namespace
+
+void judge(CutResult& result, const Scene& scene) {
   const auto refuse = [&](std::string reason) { result.refusals.push_back(std::move(reason)); };
+
+  const double opening =
+      std::min(scene.cohesive.mode_I->critical_opening(), scene.cohesive.mode_II->critical_opening());
+  if (!(opening > smallest_opening * scene.cell()))
+    refuse(fmt::format(
+        "the grid is too coarse for the cohesive law: its critical opening is {:.2f} cells (allowed from {}), so "
+        "take {} cells through the chip",
+        opening / scene.cell(), smallest_opening, std::ceil(smallest_opening * scene.cut.depth / opening)));
 
   const double residue = result.ledger.residue() / result.ledger.tool_work;
   if (!(residue > -0.01 && residue < 0.03))

@@ -53,6 +53,18 @@ double mixed_toughness(const Cohesive& cohesive, double share) {
   return 0.5 * (low + high);
 }
 
+/// Length of the process zone at this instant.
+double process_zone(const Crack& crack, const Cohesive& cohesive) {
+  double pairs = 0.0;
+  for (std::size_t k = 0; k < crack.size(); ++k) {
+    if (!crack.intact[k]) continue;
+    const double used = cohesive.mode_I->area(crack.largest_normal[k]) / cohesive.mode_I->toughness() +
+                        cohesive.mode_II->area(crack.largest_shear[k]) / cohesive.mode_II->toughness();
+    if (used > 0.05) pairs += 1.0;
+  }
+  return pairs * crack.spacing;
+}
+
 Snapshot picture(const State& state) {
   Snapshot shot;
   const Particles& p = state.particles;
@@ -130,7 +142,9 @@ void summarise(CutResult& result, const Recorder& recorder, const State& state, 
   };
   result.chip_ratio = chip_mean(&ChipShape::ratio);
   result.chip_curvature = chip_mean(&ChipShape::curvature);
-  result.branch = result.crack_lead.value > scene.cut.depth ? Branch::bending : Branch::touching;
+  result.branch = result.crack_lead.value > 0.2 * scene.cut.depth ? Branch::bending : Branch::touching;
+
+  result.process_zone = process_zone(state.crack, scene.cohesive);
 
   const double mode_I = history.back().fracture_I - history[from].fracture_I;
   const double fracture = history.back().ledger.fracture - history[from].ledger.fracture;
