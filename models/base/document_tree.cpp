@@ -73,12 +73,29 @@ std::string key_text(std::string_view key) {
   return bare ? std::string(key) : in_quotes(key);
 }
 
+/// The parser descends one call per part of a dotted key, and a file of nothing but "a.a.a.a..." would exhaust the
+/// stack.
+void refuse_endless_keys(std::string_view toml, const std::string& name) {
+  constexpr std::size_t longest_document = 1 << 20;
+  constexpr int most_dots = 64;  // on one line; dots in a row are an ellipsis and no key
+  if (toml.size() > longest_document)
+    refuse(name, {1, 1}, fmt::format("{} bytes are too many for a scene", toml.size()));
+  int dots = 0;
+  toml::source_position place{1, 1};
+  for (std::size_t i = 0; i < toml.size(); ++i, ++place.column) {
+    if (toml[i] == '\n') {
+      dots = 0;
+      place = {place.line + 1, 0};
+    } else if (toml[i] == '.' && (i + 1 == toml.size() || toml[i + 1] != '.') && ++dots > most_dots) {
+      refuse(name, place, fmt::format("this line has more than {} dots; break it into several lines", most_dots));
+    }
+  }
+}
+
 }  // namespace
 
 Node parse_toml(std::string_view toml, const std::string& name) {
-  constexpr std::size_t longest_document = 1 << 20;
-  if (toml.size() > longest_document)
-    throw InputError(fmt::format("{}:1:1: {} bytes are too many for a scene or a job", name, toml.size()));
+  refuse_endless_keys(toml, name);
   try {
     return convert(toml::parse(toml), name, 0);
   } catch (const toml::parse_error& error) {

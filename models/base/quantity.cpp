@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <stdexcept>
 
 #include "models/base/units.hpp"
@@ -61,18 +63,20 @@ Quantity written_at(const Node& node, const Parameter& parameter) {
 std::string in_range_hint(double number, std::string_view unit, const Parameter& parameter, double lower,
                           double upper) {
   const double written = consistent_units_in(unit);
-  const std::string* best = nullptr;
+  std::vector<std::string> closest;
   double smallest = std::numeric_limits<double>::infinity();
-  const auto alike = usual_units_like(parameter.unit);
-  for (const std::string& candidate : alike) {
+  for (const std::string& candidate : usual_units_like(parameter.unit)) {
+    constexpr double same = 1e-9;
     const double factor = consistent_units_in(candidate);
     const double decades = std::abs(std::log10(factor / written));
     const double value = number * factor;
-    if (value < lower || value > upper || decades < 1e-9 || decades > smallest - 1e-9) continue;
-    smallest = decades;
-    best = &candidate;
+    if (value < lower || value > upper || decades < same || decades > smallest + same) continue;
+    if (decades < smallest - same) closest.clear();
+    smallest = std::min(smallest, decades);
+    closest.push_back(candidate);
   }
-  return best ? fmt::format("; did you mean {}?", *best) : "";
+  if (closest.empty()) return "";
+  return fmt::format("; did you mean {}?", nearest(unit, closest).value_or(closest.front()));
 }
 
 }  // namespace

@@ -63,6 +63,20 @@ const ut_visitor& dimension_visitor() {
   return visitor;
 }
 
+/// UDUNITS skips bytes that it does not know; these are the characters beyond ASCII that stand in units.
+bool is_plain_text(std::string_view unit) {
+  constexpr std::string_view special[] = {"\u00b5", "\u03bc", "\u00b0", "\u00b9",
+                                          "\u00b2", "\u00b3", "\u207b", "\u00b7"};
+  while (!unit.empty()) {
+    std::size_t length = std::isprint(static_cast<unsigned char>(unit.front())) ? 1 : 0;
+    for (const std::string_view character : special)
+      if (unit.starts_with(character)) length = character.size();
+    if (length == 0) return false;
+    unit.remove_prefix(length);
+  }
+  return true;
+}
+
 /// UDUNITS reads numbers inside a unit as factors ("1 200 mm" is 200 mm after the 1, "mm^0.5" is 5). Kerf allows digits
 /// only as whole exponents, and a leading "1/".
 bool digits_are_exponents(std::string_view unit) {
@@ -113,9 +127,9 @@ class UnitSystem {
   }
 
   Measure parse(std::string_view unit) const {
-    if (unit.empty()) throw std::invalid_argument("the unit is missing");
+    if (unit.find_first_not_of(' ') == unit.npos) throw std::invalid_argument("the unit is missing");
     Unit parsed(nullptr, &ut_free);
-    if (unit.size() <= longest_unit && digits_are_exponents(unit) && unit.find('\0') == unit.npos)
+    if (unit.size() <= longest_unit && is_plain_text(unit) && digits_are_exponents(unit))
       parsed.reset(ut_parse(system_.get(), std::string(unit).c_str(), UT_UTF8));
     if (!parsed) throw std::invalid_argument(fmt::format("\"{}\" is not a unit", unit));
     Measure measure;
