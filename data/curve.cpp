@@ -103,6 +103,8 @@ class CurveReader {
   void read_header() {
     if (csv_.header.empty()) refuse({"", 1, 1}, "the file has no header line with column names");
     header_ = csv_.header.front();
+    if (csv_.header.size() == 1)
+      refuse(header_, "the header has one column only; separate the cells by commas, semicolons or tabs");
     for (std::size_t i = 0; i < csv_.header.size(); ++i) {
       const Cell& title = csv_.header[i];
       if (title.text.empty()) refuse(title, fmt::format("column {} has no name", i + 1));
