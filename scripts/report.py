@@ -1,0 +1,68 @@
+#!/usr/bin/python3
+"""Writes the report page of a calibration (a directory) or of one simulated cut (an .h5 file).
+
+Exit codes are Kerf's: 0 written, 1 this Python lacks a module, 2 usage, 3 the input is missing or broken.
+"""
+
+import argparse
+import os
+import sys
+import tempfile
+from pathlib import Path
+
+PACKAGES = {"matplotlib": "python3-matplotlib", "h5py": "python3-h5py", "jinja2": "python3-jinja2"}
+
+
+def require_modules():
+    from importlib.util import find_spec
+    absent = [package for module, package in PACKAGES.items() if find_spec(module) is None]
+    if absent:
+        print(f"{sys.executable} lacks modules that the report is drawn with; `apt-get install {' '.join(absent)}`, or "
+              f"set KERF_PYTHON to a Python that has them", file=sys.stderr)
+        sys.exit(1)
+
+
+def write_atomically(file, text):
+    handle, partial = tempfile.mkstemp(dir=file.parent, prefix=file.name + ".")
+    try:
+        with os.fdopen(handle, "w", encoding="utf-8") as stream:
+            stream.write(text)
+            stream.flush()
+            os.fsync(stream.fileno())
+        os.chmod(partial, 0o644)
+        os.replace(partial, file)
+    except BaseException:
+        os.unlink(partial)
+        raise
+
+
+def main():
+    arguments = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    arguments.add_argument("target", type=Path)
+    arguments.add_argument("--output", type=Path)
+    options = arguments.parse_args()
+    require_modules()
+    from report.calibration import read_calibration
+    from report.calibration_page import page_of_calibration
+    from report.cut import Unreadable, read_cut
+    from report.cut_page import page_of_cut
+    try:
+        if options.target.is_dir():
+            page = page_of_calibration(read_calibration(options.target))
+            output = options.output or options.target / "report.html"
+        else:
+            page = page_of_cut(read_cut(options.target))
+            output = options.output or options.target.with_suffix(".html")
+        write_atomically(output, page.html())
+    except Unreadable as error:
+        print(error, file=sys.stderr)
+        return 3
+    except OSError as error:
+        print(f"{error.filename or options.target}: {error.strerror}", file=sys.stderr)
+        return 3
+    print(output)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

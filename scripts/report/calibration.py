@@ -1,0 +1,130 @@
+"""What a calibration left in its directory.
+
+    result.json     parameters, cuts (measured and fitted), identifiability, alternatives, trace, cost   required
+    reduction.json  the same curve by closed forms and intercepts, as `kerf reduce --json` prints it     optional
+    manifest.json   versions, machine, inputs                                                            optional
+    cuts/*.h5       simulated cuts at the estimate                                                       optional
+"""
+
+import json
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from .cut import Unreadable, read_cut
+from .page import finite
+
+
+@dataclass
+class Calibration:
+    directory: Path
+    result: dict
+    reduction: dict | None = None
+    manifest: dict | None = None
+    cuts: list = field(default_factory=list)
+    notes: list = field(default_factory=list)  # what is missing or could not be read
+
+
+def read_calibration(directory):
+    """Raises Unreadable without a usable result.json; other gaps become notes."""
+    directory = Path(directory)
+    result = _json(directory / "result.json")
+    if result is None:
+        raise Unreadable(f"{directory / 'result.json'}: not there; give the directory that `kerf calibrate -o` wrote")
+    if not isinstance(result.get("parameters"), dict) or not result["parameters"]:
+        raise Unreadable(f"{directory / 'result.json'}: has no parameters")
+    calibration = Calibration(directory, result)
+    calibration.manifest = _json(directory / "manifest.json")
+    calibration.reduction = _json(directory / "reduction.json")
+    for file in sorted((directory / "cuts").glob("*.h5")):
+        try:
+            calibration.cuts.append(read_cut(file))
+        except Unreadable as error:
+            calibration.notes.append(str(error))
+    return calibration
+
+
+def _json(file):
+    try:
+        value = json.loads(file.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        return None
+    except (ValueError, OSError) as error:
+        raise Unreadable(f"{file}: cannot be read ({error})") from error
+    if not isinstance(value, dict):
+        raise Unreadable(f"{file}: is not a JSON object")
+    return value
+
+
+OBSERVABLES = ("F_c", "F_t", "chip_ratio")
+
+
+def measured_points(result):
+    """[{"depth": mm, "curve", "F_c": (value, error), ..., "weighted": {"F_c": residual / its sd}}] per measured cut."""
+    points = []
+    for cut in result.get("cuts", []):
+        point = {"depth": cut["depth_mm"], "rake": cut.get("rake_deg"), "curve": cut.get("curve", ""), "weighted": {}}
+        for key in OBSERVABLES:
+            entry = cut.get(key)
+            if isinstance(entry, dict) and finite(entry.get("measured")):
+                point[key] = (entry["measured"], entry.get("se") or 0.0)
+                point["weighted"][key] = entry.get("weighted_residual")
+        points.append(point)
+    return points
+
+
+def simulated_curve(result):
+    """The calibrated simulation through the measured depths, as a curve to draw."""
+    cuts = sorted((cut for cut in result.get("cuts", []) if cut.get("usable", True)), key=lambda cut: cut["depth_mm"])
+    curve = {"label": "simulation, calibrated", "family": "simulation", "depth": [cut["depth_mm"] for cut in cuts]}
+    for key in OBSERVABLES:
+        if any(isinstance(cut.get(key), dict) for cut in cuts):
+            curve[key] = [(cut.get(key) or {}).get("fitted") for cut in cuts]
+    return curve
+
+
+METHOD_LABELS = {
+    "shear_minimised": "minimised shear plane", "shear_minimised_adhesion": "minimised shear plane, adhesion",
+    "chip_force": "chip-force balance", "plastic_bending": "plastic bending", "atkins": "energy balance",
+    "intercept_linear": "linear intercept", "intercept_quadratic": "quadratic intercept",
+    "intercept_exponential": "exponential intercept", "intercept_model": "square-root-aware intercept",
+}
+
+
+def label_of(method):
+    return METHOD_LABELS.get(method, method.replace("_", " "))
+
+
+def family_of(method):
+    return "intercept" if method.startswith("intercept") else "closed form"
+
+
+def method_curves(reduction):
+    """Fitted curves of the simple methods; of curves at several rakes, the first rake's."""
+    curves = []
+    for name, method in ((reduction or {}).get("methods") or {}).items():
+        drawn = (method or {}).get("curve")
+        if not drawn or not drawn.get("depth_mm"):
+            continue
+        first = [k for k, rake in enumerate(drawn["rake_deg"]) if rake == drawn["rake_deg"][0]]
+        curve = {"label": label_of(name), "family": family_of(name), "depth": [drawn["depth_mm"][k] for k in first]}
+        for key in ("F_c", "F_t"):
+            column = drawn.get(f"{key}_N_per_m")
+            if column:
+                curve[key] = [column[k] for k in first]
+        curves.append(curve)
+    return curves
+
+
+def toughness_rows(calibration):
+    """Toughness by every method, the simulation first, for the comparison of intercepts."""
+    rows = []
+    for name, parameter in calibration.result["parameters"].items():
+        if name in ("toughness", "total_toughness", "G_c"):
+            rows.append({"label": "simulation (inverse)", "family": "simulation", "value": parameter["value"],
+                         "interval": parameter.get("interval"), "unit": parameter["unit"]})
+    for name, method in ((calibration.reduction or {}).get("methods") or {}).items():
+        parameter = ((method or {}).get("parameters") or {}).get("toughness")
+        if parameter and finite(parameter.get("value")):
+            rows.append({"label": label_of(name), "family": family_of(name), "value": parameter["value"],
+                         "interval": parameter.get("interval"), "unit": parameter["unit"]})
+    return rows

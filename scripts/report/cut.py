@@ -1,0 +1,168 @@
+"""What one simulated cut looked like: its file, and the figures drawn from it."""
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+import h5py
+import numpy as np
+from matplotlib.patches import Polygon
+
+from .page import with_error
+from .style import (ACCENT, ACCENT_LIGHT, ACCENT_PALE, INK, QUIET, RULE, SAND, STRAIN, WARM, WARM_LIGHT, figure,
+                    light_grid, svg)
+
+# In the file forces are N/mm and energies N mm/mm; the page speaks N/m and J/m.
+N_PER_M = 1000.0
+CLEARANCE_DRAWN = np.radians(12)  # of the tool's sketched underside when the scene does not say
+
+LEDGER = [("fracture", "fracture", ACCENT), ("plastic", "plastic flow", ACCENT_LIGHT), ("friction", "friction", WARM),
+          ("damping", "damping", WARM_LIGHT), ("elastic", "elastic", SAND), ("kinetic", "kinetic", "#8f9c9f")]
+
+
+@dataclass
+class Cut:
+    path: Path
+    title: str
+    code_version: str
+    scene: str
+    result: dict
+    history: dict
+    ledger: dict
+    particles: dict
+    faces: dict
+    tool: dict
+
+
+class Unreadable(Exception):
+    """A file that is not what it should be; the message begins with its name."""
+
+
+def read_cut(path):
+    """Raises Unreadable when `path` is not a file of `kerf simulate -o`."""
+    def columns(group):
+        return {name: item[...] for name, item in group.items() if isinstance(item, h5py.Dataset)}
+
+    try:
+        with h5py.File(path, "r") as file:
+            return Cut(path=Path(path), title=str(file.attrs["title"]), code_version=str(file.attrs["code_version"]),
+                       scene=str(file.attrs["scene"]), result=json.loads(file.attrs["result"]),
+                       history=columns(file["history"]), ledger=columns(file["history/ledger"]),
+                       particles=columns(file["particles"]), faces=columns(file["faces"]),
+                       tool={name: float(values[0]) for name, values in columns(file["tool"]).items()})
+    except (OSError, KeyError, ValueError) as error:
+        raise Unreadable(f"{path}: not a cut that `kerf simulate -o` wrote ({error})") from error
+
+
+def force_history(cut):
+    """F_c and F_t against tool travel; the steady part shaded, its mean and standard error drawn."""
+    travel = cut.history["travel"]
+    fig, axes = figure(860, 330)
+    light_grid(axes)
+    axes.axhline(0, color=QUIET, linewidth=0.8)
+    for key, label, colour in [("F_c", "F_c", ACCENT), ("F_t", "F_t", WARM)]:
+        axes.plot(travel, cut.history[key] * N_PER_M, color=colour, linewidth=1.6)
+        value, error = cut.result[key]["value"], cut.result[key]["se"]
+        if value is None:
+            continue
+        start = cut.result.get("steady_from") if cut.result.get("steady") else None
+        if start is not None:
+            axes.plot([start, travel[-1]], [value, value], color=INK, linewidth=0.9, linestyle=(0, (4, 3)))
+            if error:
+                axes.fill_between([start, travel[-1]], value - 2 * error, value + 2 * error, color=colour, alpha=0.25,
+                                  linewidth=0)
+        axes.annotate(f"{label} = {with_error(value, error, 'N/m')}", (travel[-1], value), xytext=(10, 0), textcoords="offset points", va="center", color=colour,
+                      annotation_clip=False)
+    if cut.result.get("steady"):
+        axes.axvspan(cut.result["steady_from"], travel[-1], color=ACCENT_PALE, zorder=0, linewidth=0)
+        axes.text(cut.result["steady_from"], 1.0, " steady", transform=axes.get_xaxis_transform(), va="top",
+                  color=ACCENT, fontsize=11)
+    axes.set_xlim(0, travel[-1])
+    axes.set_xlabel("tool travel, mm")
+    axes.set_ylabel("force per width, N/m")
+    return svg(fig, "cutting and transverse force against tool travel")
+
+
+def chip_picture(cut):
+    """Particles coloured by plastic strain, the tool's outline and the crack's faces."""
+    position = cut.particles["position"]
+    if len(position) == 0:
+        return None
+    x, y = position[:, 0], position[:, 1]
+    strain = cut.particles["plastic_strain"]
+    tool, depth = cut.tool, cut.tool["depth"]
+    left, right = tool["tip_x"] - 3.2 * depth, tool["tip_x"] + 4.8 * depth
+    inside = (x > left) & (x < right)
+    bottom, top = max(y.min(), tool["tip_y"] - 1.9 * depth), y[inside].max() + 0.35 * depth if inside.any() else y.max()
+    width = 860
+    fig, axes = figure(width, max(260, (width - 120) * (top - bottom) / (right - left) + 60))
+    axes.set_aspect("equal")
+    axes.set_xlim(left, right)
+    axes.set_ylim(bottom, top)
+    points_per_mm = (width - 130) / (right - left)
+    dots = axes.scatter(x[inside], y[inside], c=strain[inside], s=(1.15 * tool["particle_spacing"] * points_per_mm) ** 2, marker="s",
+                        linewidths=0, cmap=STRAIN, vmin=0, vmax=_readable_maximum(strain[inside]), rasterized=True)
+    for face, colour in [("upper", WARM), ("lower", WARM)]:
+        points = cut.faces[face]
+        shown = (points[:, 0] > left) & (points[:, 0] < right)
+        axes.plot(points[shown, 0], points[shown, 1], color=colour, linewidth=1.2)
+    axes.add_patch(Polygon(_tool_outline(tool, left, top, bottom), closed=True, facecolor="#f4f1ea", edgecolor=INK,
+                           linewidth=1.2, zorder=0.5))
+    axes.text(left + 0.06 * (right - left), min(top, tool["tip_y"] + 1.4 * depth), "tool", color=QUIET, ha="left")
+    axes.set_xlabel("x, mm")
+    axes.set_ylabel("y, mm")
+    bar = fig.colorbar(dots, ax=axes, shrink=0.85, aspect=24, pad=0.015)
+    bar.outline.set_visible(False)
+    bar.set_label("equivalent plastic strain")
+    return svg(fig, "the chip at the end of the cut, coloured by plastic strain")
+
+
+def _readable_maximum(strain):
+    """The few particles beside the crack strain most; they must not wash out the rest."""
+    return max(float(np.percentile(strain, 98.5)), 1e-6) if len(strain) else 1.0
+
+
+def _tool_outline(tool, left, top, bottom):
+    """Corners of the sharp tool: up the rake face, and back along the clearance face, to the edge of the picture."""
+    tip = np.array([tool["tip_x"], tool["tip_y"]])
+    rake_face = np.array([-np.sin(tool["rake"]), np.cos(tool["rake"])])
+    clearance_face = np.array([-np.cos(CLEARANCE_DRAWN), np.sin(CLEARANCE_DRAWN)])
+    up = tip + rake_face * (top - bottom + tip[0] - left) * 2
+    back = tip + clearance_face * (top - bottom + tip[0] - left) * 2
+    return [tip, up, [min(up[0], back[0]), max(up[1], back[1])], back]
+
+
+def energy_ledger(cut):
+    """Where the tool's work went: final shares as one bar, and their growth along the cut."""
+    total = cut.ledger["tool_work"]
+    if len(total) == 0 or not total[-1] > 0:
+        return None
+    fig, (bar, growth) = figure(860, 330, 2, 1, height_ratios=[1, 3.2])
+    shares = [(label, colour, cut.ledger[key][-1] / total[-1]) for key, label, colour in LEDGER]
+    residue = cut.ledger["residue"][-1] / total[-1]
+    start = 0.0
+    for label, colour, share in shares:
+        if share <= 0:
+            continue
+        bar.barh(0, share, left=start, color=colour, edgecolor="white", linewidth=1, height=0.8)
+        if share > 0.07:
+            dark = colour in (ACCENT, WARM)
+            bar.text(start + share / 2, 0, f"{label} {100 * share:.1f} %", ha="center", va="center",
+                     color="white" if dark else INK, fontsize=11)
+        start += share
+    bar.set_xlim(0, max(1.0, start))
+    bar.axis("off")
+    bar.set_title(f"share of the tool’s work at the end of the cut; unexplained residue {100 * residue:+.2f} %")
+
+    travel = cut.history["travel"]
+    light_grid(growth)
+    growth.stackplot(travel, *[np.maximum(cut.ledger[key], 0) for key, _, _ in LEDGER],
+                     colors=[colour for _, _, colour in LEDGER], labels=[label for _, label, _ in LEDGER], linewidth=0)
+    growth.plot(travel, total, color=INK, linewidth=1.4, label="tool work")
+    growth.set_xlim(0, travel[-1])
+    growth.set_ylim(0, None)
+    growth.set_xlabel("tool travel, mm")
+    growth.set_ylabel("energy per width, J/m")
+    handles, labels = growth.get_legend_handles_labels()
+    growth.legend(handles[::-1], labels[::-1], loc="upper left")
+    return svg(fig, "energy ledger of the cut")

@@ -1,0 +1,89 @@
+"""The sections that show one simulated cut."""
+
+from . import cut as drawing
+from .page import Page, chip, finite, html, number, pretty_unit, symbol, with_error
+
+
+def page_of_cut(cut):
+    """The page of a single file of `kerf simulate -o`."""
+    result = cut.result
+    if result["accepted"]:
+        headline = [html("The cut ran steadily from {} mm of tool travel on and passed every acceptance test: "
+                         "cutting force {}, transverse force {}, crack tip {} by the tool.",
+                         number(result["steady_from"]), _estimate(result["F_c"]), _estimate(result["F_t"]),
+                         "touched" if result["branch"] == "touching" else "not touched")]
+    else:
+        headline = ["The cut was not accepted; its forces below are no result."]
+    page = Page(kicker="Kerf · one simulated cut", title=cut.title, headline=headline, code_version=cut.code_version)
+
+    section = page.section("What it says")
+    section.warnings(result["refusals"])
+    section.facts(facts_of(result))
+    faces = result["faces"]
+    section.table(["force on a tool face, N/m", "normal", "along the face"],
+                  [["rake face", _bare(faces["rake_normal"]), _bare(faces["rake_tangential"])],
+                   ["clearance side", _bare(faces["bottom_normal"]), _bare(faces["bottom_tangential"])]], numeric=(1, 2))
+    add_cut_figures(page, cut)
+
+    cost = result["cost"]
+    page.section("Cost").facts([
+        ("wall time", f"{number(cost['wall_s'])} s", ""),
+        ("time steps", number(cost["steps"], 1), ""),
+        ("particle-steps", f"{number(cost['particle_steps'] / 1e6)} million", ""),
+        ("speed", f"{number((cost['particle_steps_per_s'] or 0) / 1e6)} million/s", "particle-steps per second"),
+    ])
+    page.section("Scene").source("the scene as it was read", cut.scene)
+    return page
+
+
+def add_cut_figures(page, cut, heading="{}"):
+    """Force history, picture and ledger, each with a note in its place when the file has nothing to draw."""
+    section = page.section(heading.format("Force along the cut"))
+    if len(cut.history["travel"]) > 1:
+        section.figure(drawing.force_history(cut), html(
+            "Means over whole cell crossings of the tool. Shaded: the part found steady, from which the dashed mean is "
+            "taken. Crack tip {} mm ahead of the tool tip.", number(cut.result["crack_lead"])))
+    else:
+        section.missing("The run ended before the tool had crossed a cell.")
+
+    section = page.section(heading.format("The chip"))
+    picture = drawing.chip_picture(cut)
+    if picture:
+        section.figure(picture, "Particles at the last instant, coloured by equivalent plastic strain; the faces of the "
+                                "crack in orange, the tool outlined (its clearance side is only sketched).")
+    else:
+        section.missing("The file holds no particles.")
+
+    section = page.section(heading.format("Where the energy went"))
+    ledger = drawing.energy_ledger(cut)
+    if ledger:
+        book = cut.result["ledger"]
+        section.figure(ledger, html(
+            "Tool work {} J per metre of width; what the entries leave unexplained is {} J/m ({} %).",
+            number(book["tool_work"]), number(book["residue"]), number(100 * book["residue"] / book["tool_work"], digits=2)))
+    else:
+        section.missing("The tool has done no work.")
+
+
+def facts_of(result):
+    return [
+        (html("cutting force {}", symbol("F", "c")), _estimate(result["F_c"]), ""),
+        (html("transverse force {}", symbol("F", "t")), _estimate(result["F_t"]), ""),
+        ("branch", result["branch"], "does the tool touch the crack tip?"),
+        ("mode I share", f"{number(100 * (result['mode_I_fraction'] or 0))} %", "of the fracture energy"),
+        ("fracture energy", number(result["fracture_energy_ratio"], digits=4), "booked per new area, over the law’s"),
+        ("crack lead", f"{number(result['crack_lead'])} mm", "ahead of the tool tip"),
+        ("chip ratio", _estimate(result["chip_ratio"]), "chip thickness over depth"),
+        ("curl radius", _estimate(result["curl_radius"]) if finite(result["curl_radius"]["value"]) else "straight",
+         "positive curls away from the tool"),
+        ("verdict", chip("accepted") if result["accepted"] else chip("not accepted", "no"),
+         f"steady from {number(result['steady_from'])} mm" if result["steady"] else "never steady"),
+    ]
+
+
+def _estimate(estimate):
+    return with_error(estimate["value"], estimate["se"], estimate["unit"])
+
+
+def _bare(estimate):
+    return with_error(estimate["value"], estimate["se"])
