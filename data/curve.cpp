@@ -309,7 +309,7 @@ std::optional<double> Measured::standard_error() const {
 
 const Block& curve_columns() {
   static const Block columns{
-      .path = "curve file",
+      .path = "columns",
       .variant = "",
       .meaning = "columns of a measured curve, a CSV file",
       .parameters =

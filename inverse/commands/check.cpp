@@ -1,12 +1,12 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <string>
 
 #include "data/curve.hpp"
 #include "forward/scene/scene.hpp"
 #include "inverse/commands/commands.hpp"
+#include "inverse/job.hpp"
 #include "models/base/document.hpp"
 #include "models/base/error.hpp"
 #include "models/base/units.hpp"
@@ -29,9 +29,21 @@ void check_scene(const Document& document) {
   fmt::print("{}: ok, a scene: {}\n", document.name(), scene.title);
 }
 
+void check_job(const std::filesystem::path& file) {
+  const inverse::Job job = inverse::read_job(file);
+  fmt::print("{}: ok, a job: {} ({} free parameters, {} cuts, at most {} runs)\n", file.string(), job.title,
+             job.free.size(), job.cuts.size(), job.budget.max_runs);
+}
+
+/// Only a job names the scene whose parameters it looks for, or says which are free.
+bool is_job(const Document& document) {
+  return document.has("scene") || document.has("free");
+}
+
 void check(const std::filesystem::path& file) {
   if (file.extension() != ".toml") return check_curve(file);
-  check_scene(Document::load(file));
+  const Document document = Document::load(file);
+  is_job(document) ? check_job(file) : check_scene(document);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "data/curve.hpp"
 #include "forward/scene/scene.hpp"
 #include "inverse/commands/commands.hpp"
+#include "inverse/job.hpp"
 #include "models/base/error.hpp"
 #include "models/base/parameter.hpp"
 
@@ -16,16 +17,20 @@ namespace {
 
 struct Source {
   std::string name;
+  std::string meaning;
   std::vector<Block> blocks;
 };
 
 /// Everything that an input file may hold, from the declarations that read it.
 std::vector<Source> sources() {
-  return {{"scene", forward::scene_blocks()}, {"curve", {data::curve_columns()}}};
+  return {{"scene", "a cut to simulate (TOML)", forward::scene_blocks()},
+          {"job", "a calibration (TOML)", inverse::job_blocks()},
+          {"curve", "a measured curve (CSV); header cells carry the unit, as in depth[um]", {data::curve_columns()}}};
 }
 
 std::string heading(const Block& block) {
-  if (block.path.empty()) return "(top of the file)";
+  if (block.path.empty()) return "top of the file";
+  if (block.path == data::curve_columns().path) return "columns";
   const std::string title = block.repeated ? fmt::format("[[{}]]", block.path) : fmt::format("[{}]", block.path);
   return block.variant.empty() ? title : fmt::format("{} law = \"{}\"", title, block.variant);
 }
@@ -68,10 +73,11 @@ void print(const Block& block) {
   fmt::print("\n");
 }
 
-/// A family is a kind of file ("scene"), a block ("cohesive.mode_I"), a group of blocks ("cohesive") or a law ("j2").
-bool belongs(const Source& source, const Block& block, std::string_view family) {
-  return family == source.name || family == block.path || block.path.starts_with(std::string(family) + ".") ||
-         (!block.variant.empty() && family == block.variant);
+/// A family is a kind of file ("scene"), a block ("cohesive.mode_I" or "mode_I"), a group of blocks ("cohesive") or a
+/// law ("j2").
+bool belongs(const Source& source, const Block& block, const std::string& family) {
+  return family == source.name || family == block.path || block.path.starts_with(family + ".") ||
+         block.path.ends_with("." + family) || (!block.variant.empty() && family == block.variant);
 }
 
 void list(const std::string& family) {
@@ -82,12 +88,14 @@ void list(const std::string& family) {
   bool found = false;
   for (const Source& source : sources()) {
     add(source.name);
+    bool titled = false;
     for (const Block& block : source.blocks) {
       add(block.path.substr(0, block.path.find('.')));
       add(block.path);
       add(block.variant);
       if (!family.empty() && !belongs(source, block, family)) continue;
-      found = true;
+      if (!titled) fmt::print("== {}: {}\n\n", source.name, source.meaning);
+      titled = found = true;
       print(block);
     }
   }
