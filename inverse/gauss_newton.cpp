@@ -29,10 +29,7 @@ bool comparable(const Objective& objective, const CutMask& common) {
 /// which some may fail, and because the same runs must come back in the same order when a journal is replayed.
 class GaussNewton {
  public:
-  GaussNewton(Objective& objective, const Evaluation& start)
-      : objective_(objective), model_(LocalModel::by_differences(objective, start)) {
-    objective_.trace("differences", here());
-  }
+  GaussNewton(Objective& objective, LocalModel model) : objective_(objective), model_(std::move(model)) {}
 
   SearchResult search() {
     try {
@@ -124,15 +121,22 @@ class GaussNewton {
 
 }  // namespace
 
+SearchResult gauss_newton(Objective& objective, const LocalModel& model) {
+  return GaussNewton(objective, model).search();
+}
+
 SearchResult gauss_newton(Objective& objective, const Evaluation& start) {
+  std::optional<LocalModel> model;
   try {
-    return GaussNewton(objective, start).search();
+    model = LocalModel::by_differences(objective, start);
   } catch (const BudgetSpent&) {
     return {.best = start,
             .converged = false,
-            .reason = "the budget of runs is spent on the first differences",
+            .reason = "the budget of runs does not cover the first differences",
             .model = {}};
   }
+  objective.trace("differences", start);
+  return gauss_newton(objective, *model);
 }
 
 }  // namespace kerf::inverse

@@ -52,6 +52,9 @@ class Objective {
   const std::vector<TraceEntry>& trace() const { return trace_; }
   std::function<void(const TraceEntry&)> on_trace;
 
+  /// Changes what may be spent in all.
+  void limit(std::size_t max_runs) { max_runs_ = max_runs; }
+
   /// Share of the cuts that failed.
   double failing_share(const Evaluation& evaluation) const;
 

@@ -26,6 +26,8 @@ struct Optimiser {
 };
 
 SearchResult gauss_newton(Objective& objective, const Evaluation& start);
+/// Continues from slopes that are known already, such as those of another misfit of the same cuts.
+SearchResult gauss_newton(Objective& objective, const LocalModel& model);
 SearchResult levenberg_marquardt(Objective& objective, const Evaluation& start);
 SearchResult bobyqa(Objective& objective, const Evaluation& start);
 SearchResult sbplx(Objective& objective, const Evaluation& start);

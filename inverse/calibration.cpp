@@ -1,0 +1,165 @@
+#include "inverse/calibration.hpp"
+
+#include <algorithm>
+
+#include "inverse/start.hpp"
+#include "inverse/statement.hpp"
+
+namespace kerf::inverse {
+namespace {
+
+std::string assumption(const Misfit& misfit) {
+  if (!misfit.edge_force()) return "no force on the tool's edge";
+  return misfit.edge_force()->cutting_share == CuttingShare::friction ? "edge force with Coulomb friction in F_c"
+                                                                      : "edge force without a part in F_c";
+}
+
+CuttingShare other(CuttingShare share) {
+  return share == CuttingShare::friction ? CuttingShare::none : CuttingShare::friction;
+}
+
+/// What a search found, with errors if its slopes are known or the budget still covers them.
+Fit conclude(const Objective& objective, SearchResult found) {
+  Fit fit{.assumption = assumption(objective.misfit()),
+          .share = {},
+          .at = std::move(found.best),
+          .residuals = {},
+          .identifiability = {},
+          .has_slopes = found.model.has_value(),
+          .converged = found.converged,
+          .reason = std::move(found.reason)};
+  if (objective.misfit().edge_force()) fit.share = objective.misfit().edge_force()->cutting_share;
+  fit.residuals = objective.misfit().residuals(fit.at);
+  if (found.model) fit.identifiability = identify(*found.model, objective.misfit(), objective.space());
+  return fit;
+}
+
+class Calibrator {
+ public:
+  Calibrator(const Job& job, RunDatabase& database, const std::function<void(const TraceEntry&)>& on_trace)
+      : job_(job), space_(job), misfit_(job, space_), objective_(job, space_, misfit_, database, job.budget.max_runs) {
+    objective_.on_trace = on_trace;
+  }
+
+  Calibration run() {
+    const Start start = find_start(job_, space_);
+    result_.start = start.point;
+    result_.start_origin = start.origin;
+    Evaluation first = evaluate_start(start.point);
+    if (objective_.failing_share(first) > job_.budget.failing_share) return give_up(std::move(first));
+    misfit_.include_simulation_errors(first);
+
+    // The differences at the end, from which the errors come, are paid for in advance.
+    const std::size_t reserve = job_.cuts.size() * job_.free.size();
+    const std::size_t all = job_.budget.max_runs;
+    objective_.limit(all > 3 * reserve ? all - reserve : all);
+    SearchResult found = find_optimiser(job_.optimiser.method).search(objective_, first);
+    objective_.limit(all);
+    complete_slopes(found);
+    const std::optional<LocalModel> model = found.model;
+    result_.fit = conclude(objective_, std::move(found));
+    if (model && job_.edge_force && job_.edge_force->compare) compare(*model);
+
+    result_.trace = objective_.trace();
+    result_.failing_share = objective_.failing_share(result_.fit.at);
+    result_.exit_code = judge_all();
+    result_.statement = state(job_, result_);
+    return std::move(result_);
+  }
+
+ private:
+  /// The start, or the middle of the ranges when too many cuts fail there.
+  Evaluation evaluate_start(const Eigen::VectorXd& point) {
+    Evaluation first = objective_.evaluate(point);
+    objective_.trace("start", first);
+    if (objective_.failing_share(first) <= job_.budget.failing_share) return first;
+    const Eigen::VectorXd middle = 0.5 * (space_.lower() + space_.upper());
+    if (middle == point) return first;
+    Evaluation second = objective_.evaluate(middle);
+    objective_.trace("start in the middle of the ranges", second);
+    if (count(second.usable) <= count(first.usable)) return first;
+    result_.start = middle;
+    result_.start_origin += "; then the middle of all ranges, because simulations failed there";
+    return second;
+  }
+
+  Calibration give_up(Evaluation at) {
+    result_.failing_share = objective_.failing_share(at);
+    result_.fit = conclude(objective_, {.best = std::move(at),
+                                        .converged = false,
+                                        .reason = "too many simulated cuts fail at the start",
+                                        .model = {}});
+    result_.trace = objective_.trace();
+    result_.exit_code = ExitCode::too_many_failed_runs;
+    result_.statement = state(job_, result_);
+    return std::move(result_);
+  }
+
+  void complete_slopes(SearchResult& found) {
+    if (found.model && found.model->is_fresh() && found.model->base().point == found.best.point) return;
+    try {
+      found.model = LocalModel::by_differences(objective_, found.best);
+      objective_.trace("differences", found.best);
+    } catch (const BudgetSpent&) {
+      if (found.model && found.model->base().point != found.best.point) found.model.reset();
+    }
+  }
+
+  /// The simulations do not know what the edge does: the other assumption starts from the same slopes.
+  void compare(const LocalModel& model) {
+    Misfit misfit = misfit_.with_share(other(job_.edge_force->cutting_share));
+    std::swap(misfit, misfit_);
+    try {
+      objective_.trace("other edge assumption", model.base());
+      SearchResult found = gauss_newton(objective_, model);
+      complete_slopes(found);
+      result_.alternatives.push_back(conclude(objective_, std::move(found)));
+    } catch (...) {
+      std::swap(misfit, misfit_);
+      throw;
+    }
+    std::swap(misfit, misfit_);
+    widen_verdicts();
+  }
+
+  /// A parameter that depends on the assumption is known no better than over all of them.
+  void widen_verdicts() {
+    std::vector<ParameterEstimate>& parameters = result_.fit.identifiability.parameters;
+    for (std::size_t j = 0; j < parameters.size(); ++j) {
+      ParameterEstimate& p = parameters[j];
+      p.verdict = judge(p.value, p.standard_error, over_all_assumptions(result_, j), p.bounds);
+    }
+  }
+
+  ExitCode judge_all() const {
+    if (result_.failing_share > job_.budget.failing_share) return ExitCode::too_many_failed_runs;
+    if (!result_.fit.converged) return ExitCode::not_converged;
+    for (const ParameterEstimate& parameter : result_.fit.identifiability.parameters)
+      if (parameter.key && parameter.verdict != Verdict::measured) return ExitCode::not_identifiable;
+    return ExitCode::success;
+  }
+
+  const Job& job_;
+  ParameterSpace space_;
+  Misfit misfit_;
+  Objective objective_;
+  Calibration result_;
+};
+
+}  // namespace
+
+Interval over_all_assumptions(const Calibration& calibration, std::size_t parameter) {
+  Interval all = calibration.fit.identifiability.parameters[parameter].interval;
+  for (const Fit& fit : calibration.alternatives) {
+    if (parameter >= fit.identifiability.parameters.size()) continue;
+    const Interval& other = fit.identifiability.parameters[parameter].interval;
+    all = {std::min(all.lower, other.lower), std::max(all.upper, other.upper)};
+  }
+  return all;
+}
+
+Calibration calibrate(const Job& job, RunDatabase& database, const std::function<void(const TraceEntry&)>& on_trace) {
+  return Calibrator(job, database, on_trace).run();
+}
+
+}  // namespace kerf::inverse

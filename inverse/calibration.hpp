@@ -1,0 +1,47 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "inverse/identifiability.hpp"
+#include "inverse/job.hpp"
+#include "inverse/optimiser.hpp"
+#include "inverse/run_database.hpp"
+#include "models/base/error.hpp"
+
+namespace kerf::inverse {
+
+/// The answer under one assumption about the edge force.
+struct Fit {
+  std::string assumption;  ///< "edge force without a part in F_c", ...
+  std::optional<CuttingShare> share;
+  Evaluation at;
+  Residuals residuals;
+  Identifiability identifiability;
+  bool has_slopes = false;  ///< false: the budget did not allow the differences that errors need
+  bool converged = false;
+  std::string reason;
+};
+
+/// Everything a calibration found out.
+struct Calibration {
+  Fit fit;
+  std::vector<Fit> alternatives;  ///< the other edge assumptions, fitted to the same runs and some more
+  std::vector<TraceEntry> trace;
+  Eigen::VectorXd start;
+  std::string start_origin;  ///< where the start values come from, in words
+  double failing_share = 0;  ///< of the cuts at the estimate
+  ExitCode exit_code = ExitCode::success;
+  std::string statement;  ///< what is and what is not determined, in plain English
+};
+
+/// Fits the job's free parameters to its curves by simulation. Deterministic: with equal runs in the database, from the
+/// journal or fresh, the answer is bitwise the same. Spends at most job.budget.max_runs distinct runs. Lets pass what
+/// the simulator throws (Interrupted).
+Calibration calibrate(const Job& job, RunDatabase& database,
+                      const std::function<void(const TraceEntry&)>& on_trace = {});
+
+/// The interval of a parameter over all edge assumptions: what may be claimed without knowing the edge.
+Interval over_all_assumptions(const Calibration& calibration, std::size_t parameter);
+
+}  // namespace kerf::inverse

@@ -1,0 +1,176 @@
+#include "inverse/calibration_json.hpp"
+
+#include <cmath>
+
+#include "models/base/units.hpp"
+
+namespace kerf::inverse {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+Json in_unit(double value, const std::string& unit) {
+  return number(value / consistent_units_in(unit));
+}
+
+Json interval(const Interval& limits, const std::string& unit) {
+  return Json::array({in_unit(limits.lower, unit), in_unit(limits.upper, unit)});
+}
+
+Json parameter(const ParameterEstimate& p) {
+  return {{"value", in_unit(p.value, p.unit)},
+          {"se", in_unit(p.standard_error, p.unit)},
+          {"interval", interval(p.interval, p.unit)},
+          {"unit", p.unit},
+          {"verdict", name(p.verdict)},
+          {"path", p.path},
+          {"bounds", interval(p.bounds, p.unit)}};
+}
+
+Json parameters(const Identifiability& identifiability) {
+  Json all = Json::object();
+  for (const ParameterEstimate& p : identifiability.parameters) all[p.name] = parameter(p);
+  return all;
+}
+
+Json rows(const Eigen::MatrixXd& matrix) {
+  Json all = Json::array();
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    Json row = Json::array();
+    for (Eigen::Index j = 0; j < matrix.cols(); ++j) row.push_back(number(matrix(i, j)));
+    all.push_back(row);
+  }
+  return all;
+}
+
+std::string unit_of(std::size_t observable) {
+  return observable == static_cast<std::size_t>(Observable::chip_ratio) ? "1" : "N/m";
+}
+
+/// One observable of one cut. The fitted value is the simulated one and what the edge force adds to it.
+Json observable(const Job& job, const Fit& fit, const Misfit& misfit, std::size_t index, std::size_t k) {
+  const RunRecord& run = fit.at.runs[index];
+  const std::array<Estimate, observable_count> all{run.F_c, run.F_t, run.chip_ratio};
+  const double friction = ParameterSpace(job).friction(fit.at.point);
+  const double edge = fit.residuals.edge_force * misfit.edge_share(static_cast<Observable>(k), friction);
+  const std::string unit = unit_of(k);
+  Json entry{{"unit", unit},
+             {"simulated", in_unit(all[k].value, unit)},
+             {"simulated_se", in_unit(all[k].standard_error, unit)},
+             {"fitted", in_unit(all[k].value + edge, unit)}};
+  const std::optional<Estimate>& measured = job.cuts[index].measured[k];
+  if (!measured) return entry;
+  entry["measured"] = in_unit(measured->value, unit);
+  entry["se"] = in_unit(measured->standard_error, unit);
+  const auto row = static_cast<Eigen::Index>(index * observable_count + k);
+  entry["weighted_residual"] = fit.at.usable[index] ? number(-fit.residuals.weighted[row]) : Json(nullptr);
+  return entry;
+}
+
+Json cut(const Job& job, const Fit& fit, const Misfit& misfit, std::size_t index) {
+  const MeasuredCut& measured = job.cuts[index];
+  const RunRecord& run = fit.at.runs[index];
+  Json json{{"curve", job.curves[measured.curve].name},
+            {"line", measured.row},
+            {"depth_mm", measured.depth},
+            {"rake_deg", in_unit(measured.rake, "deg")}};
+  for (std::size_t k = 0; k < observable_count; ++k) json[observable_names[k]] = observable(job, fit, misfit, index, k);
+  json["accepted"] = run.accepted;
+  json["usable"] = bool(fit.at.usable[index]);
+  json["refusals"] = run.refusals;
+  json["branch"] = forward::name(run.branch);
+  json["mode_I_fraction"] = number(run.mode_I_fraction);
+  json["fracture_energy_ratio"] = number(run.fracture_energy_ratio);
+  json["crack_lead_mm"] = number(run.crack_lead.value);
+  json["wall_s"] = number(run.wall_seconds);
+  return json;
+}
+
+Json trace(const Job& job, const std::vector<TraceEntry>& entries) {
+  const ParameterSpace space(job);
+  Json all = Json::array();
+  for (const TraceEntry& entry : entries) {
+    Json point = Json::object();
+    for (Eigen::Index j = 0; j < space.dimension(); ++j) {
+      const FreeParameter& p = space.parameters()[static_cast<std::size_t>(j)];
+      point[p.name] = in_unit(space.value(j, entry.point[j]), p.unit);
+    }
+    if (job.edge_force) point["edge_force"] = in_unit(entry.edge_force, "N/mm");
+    all.push_back({{"step", entry.what},
+                   {"runs", entry.runs},
+                   {"chi2", number(entry.chi2)},
+                   {"failed_cuts", entry.failed_cuts},
+                   {"parameters", std::move(point)}});
+  }
+  return all;
+}
+
+/// What holds under one assumption about the edge: the fit itself and every alternative to it say the same things.
+void add_fit(Json& json, const Fit& fit) {
+  const Identifiability& known = fit.identifiability;
+  json["assumption"] = fit.assumption;
+  if (fit.share) json["cutting_share"] = name(*fit.share);
+  json["converged"] = fit.converged;
+  json["reason"] = fit.reason;
+  json["chi2"] = number(fit.residuals.chi2);
+  json["degrees_of_freedom"] = known.degrees_of_freedom;
+  json["error_scale"] = number(known.error_scale);
+  json["parameters"] = parameters(known);
+}
+
+Json identifiability(const Identifiability& known) {
+  Json names = Json::array(), values = Json::array();
+  for (const ParameterEstimate& p : known.parameters) names.push_back(p.name);
+  for (const double value : known.singular_values) values.push_back(number(value));
+  return {{"names", std::move(names)},
+          {"singular_values", std::move(values)},
+          {"singular_vectors", rows(known.singular_vectors.transpose())},
+          {"correlation", rows(known.correlation)},
+          {"interval_half_width_in_se", number(known.quantile)}};
+}
+
+Json free_start(const Job& job, const Calibration& calibration) {
+  const ParameterSpace space(job);
+  Json start = Json::object();
+  for (Eigen::Index j = 0; j < space.dimension(); ++j) {
+    const FreeParameter& p = job.free[static_cast<std::size_t>(j)];
+    start[p.name] = in_unit(space.value(j, calibration.start[j]), p.unit);
+  }
+  return start;
+}
+
+}  // namespace
+
+Json calibration_json(const Job& job, const Calibration& calibration, const CalibrationCost& cost) {
+  const Fit& fit = calibration.fit;
+  const ParameterSpace space(job);
+  Misfit misfit(job, space);
+  Json result{{"title", job.title}, {"statement", calibration.statement}};
+  add_fit(result, fit);
+  if (!calibration.alternatives.empty())
+    for (std::size_t j = 0; j < fit.identifiability.parameters.size(); ++j) {
+      const ParameterEstimate& p = fit.identifiability.parameters[j];
+      result["parameters"][p.name]["interval_over_assumptions"] =
+          interval(over_all_assumptions(calibration, j), p.unit);
+    }
+  result["exit_code"] = static_cast<int>(calibration.exit_code);
+  result["method"] = job.optimiser.method;
+  result["runs"] = cost.runs;
+  result["failed_runs"] = cost.failed_runs;
+  result["record_runs"] = cost.record_runs;
+  result["wall_s"] = cost.wall_seconds;
+  result["identifiability"] = identifiability(fit.identifiability);
+  result["alternatives"] = Json::array();
+  for (const Fit& other : calibration.alternatives) add_fit(result["alternatives"].emplace_back(Json::object()), other);
+  result["cuts"] = Json::array();
+  for (std::size_t index = 0; index < job.cuts.size(); ++index) result["cuts"].push_back(cut(job, fit, misfit, index));
+  result["start"] = free_start(job, calibration);
+  result["start_origin"] = calibration.start_origin;
+  result["trace"] = trace(job, calibration.trace);
+  return result;
+}
+
+}  // namespace kerf::inverse

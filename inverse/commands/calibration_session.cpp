@@ -1,0 +1,193 @@
+#include "inverse/commands/calibration_session.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+
+#include "forward/record/cut_file.hpp"
+#include "forward/record/result_json.hpp"
+#include "forward/run.hpp"
+#include "inverse/calibration.hpp"
+#include "inverse/calibration_json.hpp"
+#include "inverse/closed_form_reduction.hpp"
+#include "inverse/manifest.hpp"
+#include "inverse/reduction_json.hpp"
+#include "inverse/statement.hpp"
+#include "models/base/atomic_file.hpp"
+#include "models/base/units.hpp"
+#include "models/chip/reduction.hpp"
+
+namespace kerf::commands {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+volatile std::sig_atomic_t interrupted = 0;
+
+/// While it lives, the first Ctrl-C asks the simulations to stop at the next cell crossing; a second one ends the
+/// process, which the journal survives as well.
+class StopOnInterrupt {
+ public:
+  StopOnInterrupt() {
+    struct sigaction action {};
+    action.sa_handler = [](int) { interrupted = 1; };
+    action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
+    ::sigaction(SIGINT, &action, &before_);
+  }
+  StopOnInterrupt(const StopOnInterrupt&) = delete;
+  StopOnInterrupt& operator=(const StopOnInterrupt&) = delete;
+  ~StopOnInterrupt() { ::sigaction(SIGINT, &before_, nullptr); }
+
+ private:
+  struct sigaction before_ {};
+};
+
+forward::CutResult simulate(const forward::Scene& scene) {
+  if (interrupted != 0) throw inverse::Interrupted{};
+  bool stopped = false;
+  forward::CutResult result = forward::run(scene, [&](const forward::Progress&) {
+    stopped = interrupted != 0;
+    return !stopped;
+  });
+  if (stopped) throw inverse::Interrupted{};
+  return result;
+}
+
+/// Plain lines on standard error: one per run and per step of the search, with what is left of a batch.
+class ProgressLines {
+ public:
+  explicit ProgressLines(std::size_t max_runs) : max_runs_(max_runs) {}
+
+  void batch_begins(std::size_t runs, double expected_seconds) {
+    left_ = runs;
+    if (expected_seconds > 0)
+      fmt::print(stderr, "{} new run{}, about {:.0f} s\n", runs, runs == 1 ? "" : "s", expected_seconds);
+    else
+      fmt::print(stderr, "{} new run{}\n", runs, runs == 1 ? "" : "s");
+  }
+
+  void run_ends(const inverse::RunRequest& request, const inverse::RunRecord& record) {
+    ++done_;
+    --left_;
+    std::string outcome;
+    if (record.accepted) {
+      const double one = consistent_units_in("N/m");
+      outcome = fmt::format("F_c {:.0f}, F_t {:.0f} N/m, chip ratio {:.2f}", record.F_c.value / one,
+                            record.F_t.value / one, record.chip_ratio.value);
+    } else {
+      outcome = "refused: " + (record.refusals.empty() ? std::string("no reason given") : record.refusals.front());
+    }
+    fmt::print(stderr, "  run {} ({} left in this batch): {}: {} ({:.1f} s)\n", done_, left_, request.label, outcome,
+               record.wall_seconds);
+  }
+
+  void step(const inverse::TraceEntry& entry) const {
+    fmt::print(stderr, "{}: chi2 {:.3f} after {} of at most {} runs{}\n", entry.what, entry.chi2, entry.runs, max_runs_,
+               entry.failed_cuts > 0 ? fmt::format(", {} cuts failed", entry.failed_cuts) : "");
+  }
+
+ private:
+  std::size_t max_runs_, done_ = 0, left_ = 0;
+};
+
+/// The cuts at the estimate in full. Those no longer in memory, after a resume, are simulated once more.
+std::size_t keep_cuts(const inverse::Folder& folder, const inverse::Calibration& calibration,
+                      const inverse::RunDatabase& database) {
+  const inverse::Job& job = folder.job();
+  const inverse::ParameterSpace space(job);
+  std::size_t simulated = 0;
+  for (std::size_t index = 0; index < job.cuts.size(); ++index) {
+    const Document scene = space.scene(calibration.fit.at.point, job.cuts[index]);
+    const fs::path file = folder.path() / "cuts" / fmt::format("{:03}.json", index + 1);
+    const std::string key = database.key(scene);
+    if (fs::exists(file)) {
+      const ordered_json kept = ordered_json::parse(read_file(file), nullptr, false);
+      if (!kept.is_discarded() && kept.value("run", "") == key) continue;
+    }
+    std::optional<forward::CutResult> result = database.recent(scene);
+    if (!result) {
+      fmt::print(stderr, "simulating the cut at depth {:.4g} mm once more to keep it in full\n", job.cuts[index].depth);
+      result = simulate(forward::read_scene(scene));
+      ++simulated;
+    }
+    forward::write_cut(fs::path(file).replace_extension(".h5"), scene, *result);
+    ordered_json json = forward::result_json(*result);
+    json["run"] = key;
+    write_atomically(file, json.dump(2) + "\n");
+  }
+  return simulated;
+}
+
+/// Every curve of the job by closed forms and intercepts; several curves count as one.
+void write_reduction(const inverse::Folder& folder) {
+  data::Curve all;
+  std::vector<std::string> notes;
+  for (const inverse::InputFile& file : folder.job().curves) {
+    const data::Curve curve = data::parse_curve(file.content, file.name);
+    all.points.insert(all.points.end(), curve.points.begin(), curve.points.end());
+    notes.insert(notes.end(), curve.notes.begin(), curve.notes.end());
+  }
+  const forward::Scene scene = forward::read_scene(folder.job().scene);
+  chip::FitOptions options;
+  options.elastic_modulus = scene.material.elastic_modulus;
+  options.poisson_ratio = scene.material.poisson_ratio;
+  const chip::Measurements measurements = inverse::measurements_of(all);
+  chip::Reduction reduction = chip::reduce(measurements, {}, options);
+  reduction.warnings.insert(reduction.warnings.begin(), notes.begin(), notes.end());
+  write_atomically(folder.path() / "reduction.json", inverse::to_json(reduction, measurements).dump(2) + "\n");
+}
+
+void print_table(const inverse::Calibration& calibration, const inverse::CalibrationCost& cost) {
+  fmt::print("{:<16}{:>14}{:>14}{:>28}   {}\n", "parameter", "value", "std. error", "95 % interval", "verdict");
+  for (const inverse::ParameterEstimate& p : calibration.fit.identifiability.parameters)
+    fmt::print("{:<16}{:>14}{:>14}{:>28}   {}\n", p.name, inverse::show(p.value, p.unit),
+               inverse::show(p.standard_error, p.unit),
+               inverse::show(p.interval.lower, p.unit) + " ... " + inverse::show(p.interval.upper, p.unit),
+               inverse::name(p.verdict));
+  fmt::print("\nsingular values:");
+  for (const double value : calibration.fit.identifiability.singular_values) fmt::print(" {:.3g}", value);
+  fmt::print("\n\n{}\n\n{} simulated cuts ({} failed), {:.0f} s\n", calibration.statement, cost.runs, cost.failed_runs,
+             cost.wall_seconds);
+}
+
+ExitCode finish(inverse::Folder& folder, const std::string& code, bool json) {
+  const inverse::Job& job = folder.job();
+  ProgressLines lines(job.budget.max_runs);
+  inverse::RunDatabase database(
+      folder.journal(), code, simulate, job.budget.parallel,
+      {.batch_begins = [&](std::size_t runs, double seconds) { lines.batch_begins(runs, seconds); },
+       .run_ends = [&](const inverse::RunRequest& request,
+                       const inverse::RunRecord& record) { lines.run_ends(request, record); }});
+  const inverse::Calibration calibration =
+      inverse::calibrate(job, database, [&](const inverse::TraceEntry& entry) { lines.step(entry); });
+  inverse::CalibrationCost cost{.runs = database.runs(), .failed_runs = database.failed()};
+  cost.record_runs = keep_cuts(folder, calibration, database);
+  write_reduction(folder);
+  cost.wall_seconds = database.wall_seconds();
+  write_atomically(folder.path() / "manifest.json", inverse::manifest(job, code, cost.wall_seconds).dump(2) + "\n");
+  const ordered_json result = inverse::calibration_json(job, calibration, cost);
+  write_atomically(folder.path() / "result.json", result.dump(2) + "\n");
+  if (json)
+    fmt::print("{}\n", result.dump(2));
+  else
+    print_table(calibration, cost);
+  return calibration.exit_code;
+}
+
+}  // namespace
+
+ExitCode run_session(inverse::Folder& folder, const std::string& code, bool json) {
+  const StopOnInterrupt guard;
+  try {
+    return finish(folder, code, json);
+  } catch (const inverse::Interrupted&) {
+    fmt::print(stderr, "interrupted; every finished run is kept. Continue with: kerf resume {}\n",
+               folder.path().string());
+    return ExitCode::interrupted;
+  }
+}
+
+}  // namespace kerf::commands

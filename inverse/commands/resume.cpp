@@ -1,0 +1,30 @@
+#include <memory>
+#include <string>
+
+#include "inverse/commands/calibration_session.hpp"
+#include "inverse/commands/commands.hpp"
+
+namespace kerf::commands {
+
+void add_resume(CLI::App& app, int& exit_code) {
+  struct Options {
+    std::string folder;
+    inverse::BudgetOverride budget;
+    bool json = false;
+  };
+  const auto options = std::make_shared<Options>();
+  auto* command = app.add_subcommand("resume", "Go on with a calibration that was stopped or killed");
+  command->add_option("folder", options->folder, "folder of the calibration")->required();
+  command->add_option("--parallel", options->budget.parallel, "simulations at a time")->check(CLI::PositiveNumber);
+  command->add_option("--max-runs", options->budget.max_runs, "simulated cuts at most")->check(CLI::PositiveNumber);
+  command->add_flag("--json", options->json, "print the result as JSON");
+  command->footer(
+      "No finished run is repeated, and the answer is the one an undisturbed calibration gives, to the bit.");
+  command->callback([options, &exit_code] {
+    const std::string code = inverse::code_identity();
+    inverse::Folder folder = inverse::Folder::open(options->folder, options->budget, code);
+    exit_code = static_cast<int>(run_session(folder, code, options->json));
+  });
+}
+
+}  // namespace kerf::commands

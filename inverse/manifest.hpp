@@ -1,0 +1,14 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "inverse/job.hpp"
+
+namespace kerf::inverse {
+
+/// DIR/manifest.json: what a reader needs to repeat a calibration: versions of kerf, compiler and libraries, machine,
+/// SHA-256 of every input, the job and scene as they were understood, wall and processor time.
+nlohmann::ordered_json manifest(const Job& job, const std::string& code, double wall_seconds);
+
+}  // namespace kerf::inverse

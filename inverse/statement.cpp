@@ -1,0 +1,136 @@
+#include "inverse/statement.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <cmath>
+
+#include "models/base/units.hpp"
+
+namespace kerf::inverse {
+namespace {
+
+std::string number(double value) {
+  if (!std::isfinite(value)) return "unknown";
+  const double magnitude = std::abs(value);
+  if (magnitude >= 1e6 || (magnitude > 0 && magnitude < 1e-3)) return fmt::format("{:.2e}", value);
+  const int decimals = magnitude == 0 ? 0 : std::max(0, 2 - static_cast<int>(std::floor(std::log10(magnitude))));
+  return fmt::format("{:.{}f}", value, decimals);
+}
+
+std::string between(const Interval& interval, const std::string& unit) {
+  const double one = consistent_units_in(unit);
+  return fmt::format("{} to {}{}", number(interval.lower / one), number(interval.upper / one),
+                     unit == "1" ? "" : " " + unit);
+}
+
+std::string plain(const std::string& name) {
+  std::string words = name;
+  std::replace(words.begin(), words.end(), '_', ' ');
+  return words;
+}
+
+std::string about(const ParameterEstimate& p, const Interval& all) {
+  const std::string name = plain(p.name);
+  const double one = consistent_units_in(p.unit);
+  const auto shown = [&](double value) { return show(value, p.unit); };
+  switch (p.verdict) {
+    case Verdict::measured:
+      return fmt::format("{} is measured: {} with a standard error of {} (95 % interval {}).", name, shown(p.value),
+                         shown(p.standard_error), between(all, p.unit));
+    case Verdict::bounded:
+      return fmt::format("{} is only bounded: {} fits best, but anything from {} agrees with the data.", name,
+                         shown(p.value), between(all, p.unit));
+    case Verdict::bounded_above:
+      return fmt::format(
+          "{} is only bounded above: at most {} (best fit {}; the lower end of the search, {}, is not excluded).", name,
+          shown(all.upper), shown(p.value), number(p.bounds.lower / one));
+    case Verdict::bounded_below:
+      return fmt::format(
+          "{} is only bounded below: at least {} (best fit {}; the upper end of the search, {}, is not excluded).",
+          name, shown(all.lower), shown(p.value), number(p.bounds.upper / one));
+    case Verdict::not_measurable:
+      break;
+  }
+  return fmt::format("{} is not measurable with these cuts: the whole range searched, {}, agrees with the data.", name,
+                     between(p.bounds, p.unit));
+}
+
+/// Whether the scatter about the fit is what the measured errors allow.
+std::string about_the_fit(const Identifiability& identifiability) {
+  const int freedom = identifiability.degrees_of_freedom;
+  const double chi2 = identifiability.chi2;
+  if (freedom <= 0)
+    return fmt::format("There are no more data than parameters (chi2 = {}), so the fit cannot be judged.",
+                       number(chi2));
+  const double p = boost::math::cdf(boost::math::complement(boost::math::chi_squared(freedom), chi2));
+  std::string text = fmt::format("The fit leaves chi2 = {} with {} degree{} of freedom", number(chi2), freedom,
+                                 freedom == 1 ? "" : "s");
+  text += p < 0.01 ? fmt::format(
+                         ", which measured errors alone would exceed in {} of cases only: the model misses "
+                         "something that matters",
+                         p < 1e-4 ? "less than 0.01 %" : fmt::format("{:.2g} %", 100 * p))
+          : p < 0.05 ? ", which is more than measured errors usually leave"
+                     : ", as the measured errors let expect";
+  if (identifiability.error_scale > 1)
+    text += fmt::format("; all errors are scaled up by {:.2f} for it", identifiability.error_scale);
+  return text + ".";
+}
+
+std::string about_the_edge(const Calibration& calibration) {
+  std::string text;
+  const auto describe = [](const Fit& fit) {
+    std::string values;
+    for (const ParameterEstimate& p : fit.identifiability.parameters)
+      values += fmt::format("{}{} {}", values.empty() ? "" : ", ", plain(p.name), show(p.value, p.unit));
+    return fmt::format("{}: {} (chi2 {})", fit.assumption, values, number(fit.residuals.chi2));
+  };
+  for (const Fit& other : calibration.alternatives) {
+    if (!other.has_slopes) continue;
+    text += fmt::format(" What the tool's edge adds to the cutting force is an assumption, not a measurement. {}; {}.",
+                        describe(calibration.fit), describe(other));
+    if (!other.converged) text += fmt::format(" (The second fit did not converge: {}.)", other.reason);
+  }
+  if (!text.empty()) text += " The verdicts above hold over both.";
+  return text;
+}
+
+}  // namespace
+
+std::string show(double value, const std::string& unit) {
+  return number(value / consistent_units_in(unit)) + (unit == "1" ? "" : " " + unit);
+}
+
+std::string state(const Job& job, const Calibration& calibration) {
+  const Fit& fit = calibration.fit;
+  std::string text;
+  if (calibration.exit_code == ExitCode::too_many_failed_runs) {
+    text = fmt::format("Too many simulated cuts failed ({} of {}), so nothing is claimed.",
+                       std::count(fit.at.usable.begin(), fit.at.usable.end(), false), fit.at.usable.size());
+    for (std::size_t cut = 0; cut < fit.at.runs.size(); ++cut)
+      for (const std::string& refusal : fit.at.runs[cut].refusals)
+        text += fmt::format(" At depth {}: {}.", show(job.cuts[cut].depth, "mm"), refusal);
+    return text;
+  }
+  if (!fit.converged)
+    text = fmt::format("The search did not converge: {}. What follows is where it stopped. ", fit.reason);
+  if (!fit.has_slopes)
+    return text + "The budget did not cover the differences that errors come from, so no parameter is judged.";
+  const std::vector<ParameterEstimate>& parameters = fit.identifiability.parameters;
+  for (std::size_t j = 0; j < parameters.size(); ++j) {
+    std::string sentence = about(parameters[j], over_all_assumptions(calibration, j));
+    sentence[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(sentence[0])));
+    text += sentence + " ";
+  }
+  text += about_the_fit(fit.identifiability);
+  text += about_the_edge(calibration);
+  if (!job.ties.empty()) {
+    text += " All of this holds for the ties of the job:";
+    for (const Tie& tie : job.ties) text += fmt::format(" {} = {:g} {};", tie.path, tie.factor, tie.of);
+    text.back() = '.';
+  }
+  return text;
+}
+
+}  // namespace kerf::inverse
