@@ -7,7 +7,7 @@ from markupsafe import Markup
 from . import fit_figures
 from .calibration import label_of, measured_points, method_curves, simulated_curve, toughness_rows
 from .cut_page import add_cut_figures, facts_of
-from .page import Page, chip, finite, html, large_unit, number, pretty_unit, symbol, with_error
+from .page import Page, chip, finite, html, integer, interval_text, large_unit, number, pretty_unit, prose, symbol, with_error
 
 SYMBOLS = {"toughness": symbol("G", "c"), "yield_stress": symbol("σ", "y"), "friction": symbol("μ"),
            "edge_force": symbol("F", "b"), "strength": symbol("σ", "c"), "adhesion_toughness": symbol("G", "a"),
@@ -36,7 +36,7 @@ def page_of_calibration(calibration):
 def _headline(result):
     lines = []
     if result.get("statement"):
-        lines.append(result["statement"])
+        lines.append(prose(result["statement"]))
     if result.get("converged") is False:
         lines.append(html("The search did not converge: {}.", result.get("reason", "no reason was given")))
     return lines
@@ -47,14 +47,18 @@ def _parameters(page, calibration):
     section = page.section("What was measured")
     rows = []
     for name, p in result["parameters"].items():
-        rows.append([html("{} {}", name.replace("_", " "), SYMBOLS.get(name, "")), _value(p), _interval(p),
+        rows.append([_name(name), _value(p), _interval(p),
                      _track(p), _verdict(p.get("verdict"))])
-    section.table(["parameter", "estimate ± standard error", "95 % interval", "within the bounds of the search", "verdict"],
+    section.table(["parameter", "estimate ± standard error", "95 % interval", "within the search’s bounds", "verdict"],
                   rows, numeric=(1, 2))
     if finite(result.get("chi2")):
         section.text(html("Misfit {} = {} on {} degrees of freedom{}.", Markup("χ²"), number(result["chi2"]),
                           result.get("degrees_of_freedom", "?"), _scale_remark(result)))
-    section.warnings([str(line) for line in result.get("warnings", [])] + calibration.notes)
+    section.warnings([prose(str(line)) for line in result.get("warnings", [])] + calibration.notes)
+
+
+def _name(name):
+    return html('<span style="white-space:nowrap">{} {}</span>', name.replace("_", " "), SYMBOLS.get(name, ""))
 
 
 def _scale_remark(result):
@@ -75,10 +79,7 @@ def _value(p):
 def _interval(p):
     interval = p.get("interval") or [None, None]
     factor, unit = large_unit(p["unit"], [p.get("value")])
-    ends = [number(end * factor, digits=3) if finite(end) else "∞" for end in interval]
-    if not finite(interval[0]):
-        ends[0] = "−∞"
-    return f"{ends[0]} … {ends[1]}"
+    return interval_text(interval, factor)
 
 
 def _track(p):
@@ -130,9 +131,9 @@ def _intercepts(page, calibration):
                             "through forces overshoots: with friction the force approaches its intercept like the square "
                             "root of the depth.")
     reduction = calibration.reduction or {}
-    section.warnings(reduction.get("warnings", []))
+    section.warnings([prose(line) for line in reduction.get("warnings", [])])
     methods = reduction.get("methods") or {}
-    verdicts = [[label_of(name), html('<span class="why">{}</span>', (method.get("verdict") or {}).get("statement", ""))]
+    verdicts = [[label_of(name), html('<span class="why">{}</span>', prose((method.get("verdict") or {}).get("statement", "")))]
                 for name, method in methods.items()]
     if verdicts:
         section.table(["method", "what its fit says"], verdicts)
@@ -162,10 +163,10 @@ def _identifiability(page, calibration):
                    "relative error along its direction: below 2 (orange) the data do not determine it.")
     weakest = len(values) - 1
     if finite(values[weakest]) and values[weakest] > 0:
-        share = sorted(zip(names, seen["singular_vectors"][weakest]), key=lambda pair: -abs(pair[1]))[:2]
-        section.text(f"Least known is the direction of {share[0][0].replace('_', '')}"
-                     + (f" with {share[1][0].replace('_', '')}" if len(share) > 1 and abs(share[1][1]) > 0.3 else "")
-                     + f": a relative error of {number(100 / values[weakest], digits=2)} %.")
+        shares = sorted(zip(seen["names"], seen["singular_vectors"][weakest]), key=lambda pair: -abs(pair[1]))
+        makers = [SYMBOLS.get(name, name) for name, share in shares if abs(share) > 0.3][:2]
+        section.text(html("Least known is the direction of {}: a relative error of {} %.",
+                          html(" with ").join(makers), number(100 / values[weakest], digits=2)))
 
 
 def _edge(page, calibration):
@@ -180,7 +181,7 @@ def _edge(page, calibration):
     names = list(result["parameters"])
     rows = []
     for name in names:
-        row = [html("{} {}", name.replace("_", " "), SYMBOLS.get(name, ""))]
+        row = [_name(name)]
         for fit in fits:
             p = fit.get("parameters", {}).get(name)
             row.append(html('{}<br><span class="why">{} · {}</span>', _value(p), _interval(p), p.get("verdict", "")) if p
@@ -188,7 +189,7 @@ def _edge(page, calibration):
         rows.append(row)
     rows.append([Markup("χ²")] + [html("{} <span class=\"why\">on {}</span>", number(fit.get("chi2")),
                                       fit.get("degrees_of_freedom", "?")) for fit in fits])
-    section.table(["parameter"] + [fit.get("assumption", "as fitted") for fit in fits], rows)
+    section.table(["parameter"] + [prose(fit.get("assumption", "as fitted")) for fit in fits], rows)
 
 
 def _cut(page, calibration):
@@ -198,7 +199,7 @@ def _cut(page, calibration):
     cut = max(calibration.cuts, key=lambda candidate: (candidate.result["accepted"], candidate.tool["depth"]))
     section = page.section("One of the cuts, as simulated at the estimate")
     section.text(html("{} ({}).", cut.title, cut.path.name))
-    section.warnings(cut.result["refusals"])
+    section.warnings([prose(reason) for reason in cut.result["refusals"]])
     section.facts(facts_of(cut.result))
     add_cut_figures(page, cut)
 
@@ -218,8 +219,8 @@ def _search(page, calibration):
 
 def _cost(page, calibration):
     result = calibration.result
-    facts = [("simulated cuts", number(result.get("runs"), 1), ""),
-             ("failed among them", number(result.get("failed_runs"), 1), ""),
+    facts = [("simulated cuts", integer(result.get("runs")), ""),
+             ("failed among them", integer(result.get("failed_runs")), ""),
              ("wall time", _duration(result.get("wall_s")), "")]
     speeds = [cut.result["cost"]["particle_steps_per_s"] for cut in calibration.cuts]
     speeds = [speed for speed in speeds if finite(speed)]

@@ -8,7 +8,7 @@ import h5py
 import numpy as np
 from matplotlib.patches import Polygon
 
-from .page import with_error
+from .page import large_unit, with_error
 from .style import (ACCENT, ACCENT_LIGHT, ACCENT_PALE, INK, QUIET, RULE, SAND, STRAIN, WARM, WARM_LIGHT, figure,
                     light_grid, svg)
 
@@ -57,29 +57,31 @@ def read_cut(path):
 def force_history(cut):
     """F_c and F_t against tool travel; the steady part shaded, its mean and standard error drawn."""
     travel = cut.history["travel"]
+    factor, unit = large_unit("N/m", list(cut.history["F_c"] * N_PER_M))
+    start = cut.result["steady_from"] if cut.result["steady"] and cut.result["steady_from"] < travel[-1] else None
     fig, axes = figure(860, 330)
     light_grid(axes)
     axes.axhline(0, color=QUIET, linewidth=0.8)
     for key, label, colour in [("F_c", "F_c", ACCENT), ("F_t", "F_t", WARM)]:
-        axes.plot(travel, cut.history[key] * N_PER_M, color=colour, linewidth=1.6)
+        axes.plot(travel, cut.history[key] * N_PER_M * factor, color=colour, linewidth=1.6)
         value, error = cut.result[key]["value"], cut.result[key]["se"]
         if value is None:
             continue
-        start = cut.result.get("steady_from") if cut.result.get("steady") else None
+        value, error = value * factor, error * factor if error is not None else None
         if start is not None:
             axes.plot([start, travel[-1]], [value, value], color=INK, linewidth=0.9, linestyle=(0, (4, 3)))
             if error:
                 axes.fill_between([start, travel[-1]], value - 2 * error, value + 2 * error, color=colour, alpha=0.25,
                                   linewidth=0)
-        axes.annotate(f"{label} = {with_error(value, error, 'N/m')}", (travel[-1], value), xytext=(10, 0), textcoords="offset points", va="center", color=colour,
+        axes.annotate(f"{label} = {with_error(value, error, unit)}", (travel[-1], value), xytext=(10, 0), textcoords="offset points", va="center", color=colour,
                       annotation_clip=False)
-    if cut.result.get("steady"):
-        axes.axvspan(cut.result["steady_from"], travel[-1], color=ACCENT_PALE, zorder=0, linewidth=0)
-        axes.text(cut.result["steady_from"], 1.0, " steady", transform=axes.get_xaxis_transform(), va="top",
+    if start is not None:
+        axes.axvspan(start, travel[-1], color=ACCENT_PALE, zorder=0, linewidth=0)
+        axes.text(start, 1.0, " steady", transform=axes.get_xaxis_transform(), va="top",
                   color=ACCENT, fontsize=11)
     axes.set_xlim(0, travel[-1])
     axes.set_xlabel("tool travel, mm")
-    axes.set_ylabel("force per width, N/m")
+    axes.set_ylabel(f"force per width, {unit}")
     return svg(fig, "cutting and transverse force against tool travel")
 
 
@@ -108,7 +110,9 @@ def chip_picture(cut):
         axes.plot(points[shown, 0], points[shown, 1], color=colour, linewidth=1.2)
     axes.add_patch(Polygon(_tool_outline(tool, left, top, bottom), closed=True, facecolor="#f4f1ea", edgecolor=INK,
                            linewidth=1.2, zorder=0.5))
-    axes.text(left + 0.06 * (right - left), min(top, tool["tip_y"] + 1.4 * depth), "tool", color=QUIET, ha="left")
+    inward = sum(_tool_faces(tool))  # half-way between the rake face and the clearance face
+    axes.text(*(np.array([tool["tip_x"], tool["tip_y"]]) + 1.7 * depth * inward / np.linalg.norm(inward)), "tool",
+              color=QUIET, ha="center", va="center", zorder=0.6, clip_on=True)
     axes.set_xlabel("x, mm")
     axes.set_ylabel("y, mm")
     bar = fig.colorbar(dots, ax=axes, shrink=0.85, aspect=24, pad=0.015)
@@ -122,11 +126,16 @@ def _readable_maximum(strain):
     return max(float(np.percentile(strain, 98.5)), 1e-6) if len(strain) else 1.0
 
 
+def _tool_faces(tool):
+    """Unit vectors from the tip up the rake face and back along the clearance face."""
+    return (np.array([-np.sin(tool["rake"]), np.cos(tool["rake"])]),
+            np.array([-np.cos(CLEARANCE_DRAWN), np.sin(CLEARANCE_DRAWN)]))
+
+
 def _tool_outline(tool, left, top, bottom):
     """Corners of the sharp tool: up the rake face, and back along the clearance face, to the edge of the picture."""
     tip = np.array([tool["tip_x"], tool["tip_y"]])
-    rake_face = np.array([-np.sin(tool["rake"]), np.cos(tool["rake"])])
-    clearance_face = np.array([-np.cos(CLEARANCE_DRAWN), np.sin(CLEARANCE_DRAWN)])
+    rake_face, clearance_face = _tool_faces(tool)
     up = tip + rake_face * (top - bottom + tip[0] - left) * 2
     back = tip + clearance_face * (top - bottom + tip[0] - left) * 2
     return [tip, up, [min(up[0], back[0]), max(up[1], back[1])], back]
@@ -150,6 +159,8 @@ def energy_ledger(cut):
             bar.text(start + share / 2, 0, f"{label} {100 * share:.1f} %", ha="center", va="center",
                      color="white" if dark else INK, fontsize=11)
         start += share
+    if residue > 0.002:
+        bar.barh(0, residue, left=start, facecolor="white", edgecolor=WARM, linewidth=1, height=0.78)
     bar.set_xlim(0, max(1.0, start))
     bar.axis("off")
     bar.set_title(f"share of the tool’s work at the end of the cut; unexplained residue {100 * residue:+.2f} %")

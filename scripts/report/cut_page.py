@@ -1,7 +1,7 @@
 """The sections that show one simulated cut."""
 
 from . import cut as drawing
-from .page import Page, chip, finite, html, number, pretty_unit, symbol, with_error
+from .page import Page, chip, finite, html, integer, number, prose, symbol, with_error
 
 
 def page_of_cut(cut):
@@ -17,7 +17,7 @@ def page_of_cut(cut):
     page = Page(kicker="Kerf · one simulated cut", title=cut.title, headline=headline, code_version=cut.code_version)
 
     section = page.section("What it says")
-    section.warnings(result["refusals"])
+    section.warnings([prose(reason) for reason in result["refusals"]])
     section.facts(facts_of(result))
     faces = result["faces"]
     section.table(["force on a tool face, N/m", "normal", "along the face"],
@@ -28,7 +28,7 @@ def page_of_cut(cut):
     cost = result["cost"]
     page.section("Cost").facts([
         ("wall time", f"{number(cost['wall_s'])} s", ""),
-        ("time steps", number(cost["steps"], 1), ""),
+        ("time steps", integer(cost["steps"]), ""),
         ("particle-steps", f"{number(cost['particle_steps'] / 1e6)} million", ""),
         ("speed", f"{number((cost['particle_steps_per_s'] or 0) / 1e6)} million/s", "particle-steps per second"),
     ])
@@ -66,19 +66,27 @@ def add_cut_figures(page, cut, heading="{}"):
 
 
 def facts_of(result):
+    curl, ledger = result["curl_radius"], result["ledger"]
+    residue = ledger["residue"] / ledger["tool_work"] if finite(ledger["residue"]) and ledger["tool_work"] else None
     return [
+        ("verdict", chip("accepted") if result["accepted"] else chip("not accepted", "no"),
+         f"steady from {number(result['steady_from'])} mm" if result["steady"] else "never steady"),
         (html("cutting force {}", symbol("F", "c")), _estimate(result["F_c"]), ""),
         (html("transverse force {}", symbol("F", "t")), _estimate(result["F_t"]), ""),
         ("branch", result["branch"], "does the tool touch the crack tip?"),
-        ("mode I share", f"{number(100 * (result['mode_I_fraction'] or 0))} %", "of the fracture energy"),
+        ("chip ratio", _estimate(result["chip_ratio"]), "chip thickness over depth of cut"),
+        ("curl radius", _estimate(curl) if finite(curl["value"]) else "straight", "positive curls away from the tool"),
+        ("crack lead", f"{number(result['crack_lead'])} mm", "foremost broken pair ahead of the tip"),
+        ("mode I share", f"{number(percent(result['mode_I_fraction']))} %", "of the energy of separation"),
         ("fracture energy", number(result["fracture_energy_ratio"], digits=4), "booked per new area, over the law’s"),
-        ("crack lead", f"{number(result['crack_lead'])} mm", "ahead of the tool tip"),
-        ("chip ratio", _estimate(result["chip_ratio"]), "chip thickness over depth"),
-        ("curl radius", _estimate(result["curl_radius"]) if finite(result["curl_radius"]["value"]) else "straight",
-         "positive curls away from the tool"),
-        ("verdict", chip("accepted") if result["accepted"] else chip("not accepted", "no"),
-         f"steady from {number(result['steady_from'])} mm" if result["steady"] else "never steady"),
+        ("deepest penetration", f"{number(result['deepest_penetration'])} cells", "of a crack face into the tool"),
+        ("ledger’s residue", f"{number(percent(residue), digits=2)} %", "of the tool’s work, unexplained"),
+        ("wall time", f"{number(result['cost']['wall_s'])} s", ""),
     ]
+
+
+def percent(share):
+    return 100 * share if finite(share) else None
 
 
 def _estimate(estimate):

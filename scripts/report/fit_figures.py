@@ -5,8 +5,8 @@ import math
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
-from .page import finite, large_unit, number, pretty_unit
-from .style import (ACCENT, ACCENT_LIGHT, ACCENT_PALE, INK, QUIET, RULE, SAND, WARM, WARM_LIGHT, figure, light_grid,
+from .page import finite, interval_text, large_unit, number, pretty_unit
+from .style import (ACCENT, ACCENT_LIGHT, ACCENT_PALE, BALANCE, INK, QUIET, RULE, SAND, WARM, WARM_LIGHT, figure, light_grid,
                     svg)
 
 OBSERVABLES = {"F_c": ("cutting force F_c", "N/m"), "F_t": ("transverse force F_t", "N/m"),
@@ -61,7 +61,9 @@ def measured_and_fitted(points, curves):
         ax.xaxis.set_major_locator(MaxNLocator(5))
     for ax in axes[1]:
         ax.axis("off")
-    axes[1][0].legend(handles.values(), handles.keys(), loc="upper left", ncols=3, columnspacing=2.2, borderaxespad=0)
+    legend = axes[1][0].legend(handles.values(), handles.keys(), loc="upper left", ncols=3, columnspacing=2.2,
+                               borderaxespad=0)
+    legend.set_in_layout(False)  # it may reach under all panels
     return svg(fig, "measured and fitted forces against depth of cut")
 
 
@@ -103,7 +105,7 @@ def intercept_comparison(rows):
         ax.plot([row["value"] * factor], [y], "o", color=colour, markersize=8 if row["family"] == "simulation" else 6.5)
         text = number(row["value"] * factor)
         if row["interval"]:
-            text += f"  [{_end(row['interval'][0], factor)} … {_end(row['interval'][1], factor)}]"
+            text += f"  [{interval_text(row['interval'], factor, 2)}]"
         ax.annotate(text, (1, y), xycoords=("axes fraction", "data"), xytext=(14, 0), textcoords="offset points",
                     va="center", color=colour, fontsize=11.5, annotation_clip=False)
     if low < 0:
@@ -111,16 +113,12 @@ def intercept_comparison(rows):
     ax.set_yticks([-line for line in range(len(rows))], [row["label"] for row in rows])
     for label, row in zip(ax.get_yticklabels(), rows):
         label.set_color(colours[row["family"]])
-    ax.tick_params(axis="y", length=0)
+    ax.tick_params(axis="y", length=0, pad=10)
     ax.spines["left"].set_visible(False)
     ax.set_xlim(low, high)
     ax.set_ylim(-len(rows) + 0.4, 0.6)
     ax.set_xlabel(f"toughness G_c, {pretty_unit(unit)}")
     return svg(fig, "toughness by every method with its 95 percent interval")
-
-
-def _end(value, factor):
-    return number(value * factor, digits=2) if finite(value) else "∞"
 
 
 def residuals(points):
@@ -184,6 +182,7 @@ def identifiability(names, singular_values, vectors, correlation):
                     color=shades[j % len(shades)])
     middle.axvline(0, color=QUIET, linewidth=0.8)
     middle.set_xlim(-1.05, 1.05)
+    middle.set_xticks([-1, -0.5, 0, 0.5, 1])
     middle.set_yticks([])
     middle.spines["left"].set_visible(False)
     middle.legend(loc="upper center", bbox_to_anchor=(0.5, -0.1), ncols=2, handlelength=1, columnspacing=1.2)
@@ -192,20 +191,15 @@ def identifiability(names, singular_values, vectors, correlation):
         right = axes[0][2]
         matrix = np.array(correlation, dtype=float)
         size = len(matrix)
-        right.set_title("correlation")
-        for i in range(size):
-            for j in range(i + 1):
-                r = matrix[i, j]
-                if i == j or not np.isfinite(r):
-                    continue
-                right.scatter([j], [-i], s=60 + 900 * abs(r), color=ACCENT if r > 0 else WARM, alpha=0.25 + 0.6 * abs(r),
-                              linewidths=0)
-                right.text(j, -i, number(r, digits=2), ha="center", va="center", fontsize=11,
-                           color="white" if abs(r) > 0.75 else INK)
-        right.set_xlim(-0.6, size - 1.4 + 0.2)
-        right.set_ylim(-size + 0.4, -0.4)
-        right.set_xticks(range(size - 1), names[:size - 1], rotation=30, ha="right")
-        right.set_yticks([-i for i in range(1, size)], names[1:size])
+        below = np.where(np.tri(size, k=-1, dtype=bool), matrix, np.nan)[1:, :-1]
+        right.imshow(below, cmap=BALANCE, vmin=-1, vmax=1)
+        for (i, j), r in np.ndenumerate(below):
+            if np.isfinite(r):
+                right.text(j, i, f"{r:.2f}".replace("-", "−"), ha="center", va="center", fontsize=11,
+                           color="white" if abs(r) > 0.7 else INK)
+        right.set_title("correlation of the estimates")
+        right.set_xticks(range(size - 1), names[:-1])
+        right.set_yticks(range(size - 1), names[1:])
         right.tick_params(length=0)
         for spine in right.spines.values():
             spine.set_visible(False)

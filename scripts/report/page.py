@@ -1,6 +1,7 @@
 """A page as a list of sections, each a list of parts; the template turns it into HTML."""
 
 import math
+import re
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -92,6 +93,27 @@ def number(value, error=None, digits=3):
     decimals = min(decimals, 6)
     rounded = round(value, decimals)
     return f"{rounded:,.{max(decimals, 0)}f}".replace("-", "−").replace(",", "\u202f")
+
+
+def integer(value):
+    return f"{round(value):,}".replace("-", "−").replace(",", "\u202f") if finite(value) else "–"
+
+
+def interval_text(interval, factor=1.0, digits=3):
+    """"7.8 … 25"; an end that is not there is infinite."""
+    lower, upper = interval
+    return (f"{number(lower * factor, digits=digits) if finite(lower) else '−∞'} … "
+            f"{number(upper * factor, digits=digits) if finite(upper) else '∞'}")
+
+
+def prose(text):
+    """Plain text from a result, with its symbols set as symbols."""
+    parts = re.split(r"\b([FG])_([a-zA-Z])\b|(chi2)", text.replace("J/m^2", "J/m²"))
+    out = Markup("")
+    for plain, letter, index, square in zip(parts[0::4], parts[1::4] + [None], parts[2::4] + [None], parts[3::4] + [None]):
+        out += escape(plain)
+        out += symbol(letter, index) if letter else escape("χ²" if square else "")
+    return out
 
 
 def with_error(value, error, unit=""):

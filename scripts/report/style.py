@@ -23,6 +23,8 @@ SAND = "#c9b78f"
 # From paper to deep water: lightness falls steadily, so that it survives a grey printer.
 STRAIN = LinearSegmentedColormap.from_list("strain", ["#e9eeec", "#b5d3d0", "#5fa3a5", "#1d6b73", "#0d3a44", "#071c26"])
 
+BALANCE = LinearSegmentedColormap.from_list("balance", ["#b9572a", "#eec9b2", "#f7f8f7", "#b5d3d0", "#1d6b73"])
+
 FONTS = "Inter, 'Helvetica Neue', Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif"
 
 plt.rcParams.update({
