@@ -119,9 +119,14 @@ def toughness_rows(calibration):
     """Toughness by every method, the simulation first, for the comparison of intercepts."""
     rows = []
     for name, parameter in calibration.result["parameters"].items():
-        if name in ("toughness", "total_toughness", "G_c"):
-            rows.append({"label": "simulation (inverse)", "family": "simulation", "value": parameter["value"],
-                         "interval": parameter.get("interval"), "unit": parameter["unit"]})
+        if parameter["unit"] != "J/m^2":
+            continue
+        label = "simulation" if name == "toughness" else f"simulation: {name.replace('_', ' ')}"
+        row = {"label": label, "family": "simulation", "value": parameter["value"],
+               "interval": parameter.get("interval"), "unit": parameter["unit"]}
+        rows.append(row)
+        if parameter.get("interval_over_assumptions"):
+            rows.append(row | {"label": label + ", whatever the edge", "interval": parameter["interval_over_assumptions"]})
     for name, method in ((calibration.reduction or {}).get("methods") or {}).items():
         parameter = ((method or {}).get("parameters") or {}).get("toughness")
         if parameter and finite(parameter.get("value")):

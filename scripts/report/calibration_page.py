@@ -76,8 +76,10 @@ def _value(p):
     return with_error(p["value"] * factor, error * factor if finite(error) else None, unit)
 
 
-def _interval(p):
-    interval = p.get("interval") or [None, None]
+def _interval(p, key="interval"):
+    interval = p.get(key)
+    if not interval:
+        return "–"
     factor, unit = large_unit(p["unit"], [p.get("value")])
     return interval_text(interval, factor)
 
@@ -178,18 +180,19 @@ def _edge(page, calibration):
     section.text("How much of the force on the worn edge adds to the cutting force is not measured. What the fit says under "
                  "each assumption:")
     fits = [result] + alternatives
-    names = list(result["parameters"])
     rows = []
-    for name in names:
+    for name, fitted in result["parameters"].items():
         row = [_name(name)]
         for fit in fits:
             p = fit.get("parameters", {}).get(name)
             row.append(html('{}<br><span class="why">{} · {}</span>', _value(p), _interval(p), p.get("verdict", "")) if p
                        else "–")
+        row.append(_interval(fitted, "interval_over_assumptions"))
         rows.append(row)
     rows.append([Markup("χ²")] + [html("{} <span class=\"why\">on {}</span>", number(fit.get("chi2")),
-                                      fit.get("degrees_of_freedom", "?")) for fit in fits])
-    section.table(["parameter"] + [prose(fit.get("assumption", "as fitted")) for fit in fits], rows)
+                                      fit.get("degrees_of_freedom", "?")) for fit in fits] + [""])
+    section.table(["parameter"] + [prose(fit.get("assumption", "as fitted")) for fit in fits] + ["interval, either way"],
+                  rows)
 
 
 def _cut(page, calibration):

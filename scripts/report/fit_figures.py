@@ -161,7 +161,8 @@ def identifiability(names, singular_values, vectors, correlation):
                        width_ratios=[1, 1.7, 1.5] if has_correlation else [1, 1.7])
     left, middle = axes[0][0], axes[0][1]
     rows = -np.arange(count)
-    values = np.array(singular_values, dtype=float)
+    values = np.nan_to_num(np.array(singular_values, dtype=float))
+    vectors = np.array(vectors, dtype=float)
     left.barh(rows, values, color=[ACCENT if v > 2 else WARM for v in values], height=0.5)
     left.set_xscale("log")
     left.set_xlim(min(0.5, values[values > 0].min() / 2 if (values > 0).any() else 0.5), values.max() * 6)
