@@ -7,7 +7,10 @@
 
 namespace kerf::forward {
 
-void follow_face(State& state, double depth) {
+namespace {
+
+/// Mean height of the lower face 0.1 h ... 0.3 h ahead of the tip.
+double mean_height_ahead(const State& state, double depth) {
   const Face& face = state.crack.face[below];
   double sum = 0.0, count = 0.0;
   for (std::size_t k = 0; k < state.crack.size(); ++k) {
@@ -16,7 +19,13 @@ void follow_face(State& state, double depth) {
     sum += face.y[k];
     count += 1.0;
   }
-  const double height = count > 0.0 ? sum / count : state.tool.y;
+  return count > 0.0 ? sum / count : state.tool.y;
+}
+
+}  // namespace
+
+void follow_face(State& state, double depth) {
+  const double height = mean_height_ahead(state, depth);
   state.tool.vertical_speed = state.tool.speed * (height - state.tool.y) / (0.3 * depth);
   state.tool.y += state.step * state.tool.vertical_speed;
 }
