@@ -56,7 +56,25 @@ Minimum best_of_starts(const LeastSquares& problem) {
   for (const auto& start : problem.starts) {
     if (auto minimum = minimise(problem, start); minimum.chi2 < best.chi2) best = std::move(minimum);
   }
-  return best;
+  return std::isfinite(best.chi2) ? polish(problem, best) : best;
+}
+
+/// An estimate that differs from a bound by less than the minimum can tell lies on it: the bound's value is the answer,
+/// not the last digits of a search that ran into it.
+void settle_on_bounds(const LeastSquares& problem, Minimum& best) {
+  constexpr double indifferent = 1e-6;
+  for (std::size_t i = 0; i < best.values.size(); ++i) {
+    for (const double bound : {problem.unknowns[i].lower, problem.unknowns[i].upper}) {
+      if (!std::isfinite(bound) || best.values[i] == bound) continue;
+      auto settled = best.values;
+      settled[i] = bound;
+      const double chi2 = chi2_at(problem, settled);
+      if (chi2 <= best.chi2 * (1.0 + indifferent)) {
+        best.values = std::move(settled);
+        best.chi2 = chi2;
+      }
+    }
+  }
 }
 
 /// Size of the residuals if the model predicted nothing: what "exactly fitted" is measured against.
@@ -70,7 +88,7 @@ double total(const LeastSquares& problem, const Minimum& best, const Eigen::Matr
 
 /// Covariance of what is free: an estimate that rests on a bound is not free to spread. Singular values are of all.
 Covariance spread_at(const LeastSquares& problem, const std::vector<double>& values) {
-  Eigen::MatrixXd jacobian = jacobian_at(problem, values);
+  Eigen::MatrixXd jacobian = linearise(problem, values).jacobian;
   auto singular_values = covariance(jacobian).singular_values;
   for (std::size_t i = 0; i < values.size(); ++i) {
     const auto& unknown = problem.unknowns[i];
@@ -113,6 +131,7 @@ Fit solve(const LeastSquares& problem) {
   const int unknowns = static_cast<int>(problem.unknowns.size());
   const int reported = unknowns - problem.nuisances;
   Minimum best = best_of_starts(problem);
+  settle_on_bounds(problem, best);
 
   Fit fit;
   fit.noise = problem.noise;
@@ -133,7 +152,7 @@ Fit solve(const LeastSquares& problem) {
       const double variance = problem.noise.measured ? 1.0 : best.chi2 / fit.freedom;
       const double factor = coverage_factor(problem.noise.measured ? problem.noise.freedom : fit.freedom);
       const double rise = factor * factor * variance;
-      const bool exact = rise <= 1e-18 * total(problem, best, jacobian_at(problem, best.values));
+      const bool exact = rise <= 1e-18 * total(problem, best, linearise(problem, best.values).jacobian);
       for (int i = 0; i < reported; ++i) {
         const auto at = static_cast<std::size_t>(i);
         if (exact) {

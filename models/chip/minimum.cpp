@@ -19,16 +19,17 @@ double chi2_at(const LeastSquares& problem, const std::vector<double>& values) {
   return residuals.squaredNorm();
 }
 
-Eigen::MatrixXd jacobian_at(const LeastSquares& problem, const std::vector<double>& values) {
+Linearised linearise(const LeastSquares& problem, const std::vector<double>& values) {
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  Eigen::VectorXd residuals(problem.residuals->num_residuals());
-  RowMajor jacobian(residuals.size(), static_cast<Eigen::Index>(values.size()));
+  Linearised result{Eigen::VectorXd(problem.residuals->num_residuals()), {}};
+  RowMajor jacobian(result.residuals.size(), static_cast<Eigen::Index>(values.size()));
   const double* block = values.data();
   double* rows = jacobian.data();
-  if (!problem.residuals->Evaluate(&block, residuals.data(), &rows)) {
+  if (!problem.residuals->Evaluate(&block, result.residuals.data(), &rows)) {
     jacobian.setConstant(std::numeric_limits<double>::quiet_NaN());
   }
-  return jacobian;
+  result.jacobian = jacobian;
+  return result;
 }
 
 Minimum minimise(const LeastSquares& problem, std::vector<double> start, std::optional<int> held) {
@@ -57,6 +58,7 @@ Minimum minimise(const LeastSquares& problem, std::vector<double> start, std::op
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;
   options.max_num_iterations = 200;
+  options.max_num_consecutive_invalid_steps = 60;  // a search may have to back out of where Eq. (4) has no root
   options.function_tolerance = 1e-15;
   options.gradient_tolerance = 1e-15;
   options.parameter_tolerance = 1e-13;
@@ -66,6 +68,22 @@ Minimum minimise(const LeastSquares& problem, std::vector<double> start, std::op
   minimum.chi2 = chi2_at(problem, minimum.values);
   minimum.converged = summary.IsSolutionUsable();
   return minimum;
+}
+
+Minimum polish(const LeastSquares& problem, const Minimum& minimum) {
+  const auto [residuals, jacobian] = linearise(problem, minimum.values);
+  const Eigen::VectorXd step = -covariance(jacobian).matrix * (jacobian.transpose() * residuals);
+  if (!step.allFinite()) return minimum;
+  Minimum polished = minimum;
+  for (std::size_t i = 0; i < polished.values.size(); ++i) {
+    polished.values[i] += step[static_cast<Eigen::Index>(i)];
+    if (polished.values[i] < problem.unknowns[i].lower || polished.values[i] > problem.unknowns[i].upper) {
+      return minimum;
+    }
+  }
+  polished.chi2 = chi2_at(problem, polished.values);
+  constexpr double rounding = 1e-13;
+  return polished.chi2 <= minimum.chi2 * (1.0 + rounding) ? polished : minimum;
 }
 
 Covariance covariance(const Eigen::MatrixXd& jacobian) {

@@ -18,11 +18,19 @@ struct Minimum {
 /// Bounded Levenberg-Marquardt (Ceres) from `start`; the unknown `held`, if any, stays where it starts.
 Minimum minimise(const LeastSquares& problem, std::vector<double> start, std::optional<int> held = {});
 
+/// One Gauss-Newton step from a minimum that was found by comparing chi2, which fixes only half of the digits. Returns
+/// `minimum` itself where the step would leave the bounds or raise chi2.
+Minimum polish(const LeastSquares& problem, const Minimum& minimum);
+
 /// Sum of squared residuals; infinite where they are undefined.
 double chi2_at(const LeastSquares& problem, const std::vector<double>& values);
 
-/// Residuals by rows, unknowns by columns.
-Eigen::MatrixXd jacobian_at(const LeastSquares& problem, const std::vector<double>& values);
+/// Residuals, and their derivatives by columns; NaN where undefined.
+struct Linearised {
+  Eigen::VectorXd residuals;
+  Eigen::MatrixXd jacobian;
+};
+Linearised linearise(const LeastSquares& problem, const std::vector<double>& values);
 
 /// Inverse of J^T J, with NaN for unknowns that take part in a combination J does not see: no pseudo-inverse, which
 /// would give such a pair a small variance.
