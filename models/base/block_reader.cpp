@@ -140,6 +140,7 @@ void BlockReader::refuse_name(const std::string& key, const Node& value, const s
   const auto tables = children_of(path);
   if (value.table()) {
     std::vector<std::string> paths;
+    paths.reserve(tables.size());
     for (const std::string& child : tables) paths.push_back(join_path(path, child));
     throw InputError(fmt::format("{}: there is no table [{}]{}", where, join_path(path, key),
                                  suggestion(join_path(path, key), paths)));

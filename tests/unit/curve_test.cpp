@@ -1,6 +1,7 @@
 // Measured curves: real files are messy, and each mess is either read right or refused with its place.
 #include "data/curve.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -250,10 +251,9 @@ TEST(Curve, NumbersSurviveEverySeparatorAndDecimalMark) {
           text[text.find('.')] = mark;
           return text;
         };
-        const std::string s(1, separator);
-        const Curve curve = parse_curve(
-            rake + "depth[mm]" + s + "Fc[N/mm]" + s + "Ft[N/mm]\n" + spelled(h / 100) + s + "1" + s + spelled(F) + "\n",
-            "c");
+        const std::string file = fmt::format("{0}depth[mm]{1}Fc[N/mm]{1}Ft[N/mm]\n{2}{1}1{1}{3}\n", rake, separator,
+                                             spelled(h / 100), spelled(F));
+        const Curve curve = parse_curve(file, "c");
         ASSERT_EQ(curve.points.front().depth, std::stod(std::to_string(h / 100)));
         ASSERT_EQ(curve.points.front().F_t.value, std::stod(std::to_string(F)));
       }

@@ -1,0 +1,24 @@
+#!/usr/bin/env bash
+# Checks the format of every source and runs clang-tidy over the library and the program; skips a tool that is missing.
+# Usage: scripts/lint.sh [--thorough]   (--thorough: also the tests, and clang's slow static analyzer)
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+folders=(models forward data inverse)
+checks='-clang-analyzer-*'
+if [[ "${1:-}" == --thorough ]]; then
+  folders+=(tests)
+  checks=''
+fi
+
+if command -v clang-format >/dev/null; then
+  echo "== clang-format"
+  git ls-files -z '*.cpp' '*.hpp' | xargs -0 clang-format --dry-run --Werror
+fi
+
+if command -v clang-tidy >/dev/null; then
+  echo "== clang-tidy: ${folders[*]}"
+  cmake --preset release >/dev/null
+  git ls-files -z "${folders[@]/%//*.cpp}" |
+    xargs -0 --max-procs="$(nproc)" --max-args=1 clang-tidy --quiet --checks="$checks" -p build/release 2>/dev/null
+fi
