@@ -7,6 +7,7 @@
 """
 
 import json
+import re
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -83,7 +84,10 @@ def simulated_curve(result):
 
 
 METHOD_LABELS = {
-    "shear_minimised": "minimised shear plane", "shear_minimised_adhesion": "minimised shear plane, adhesion",
+    "shear_minimised": "minimised shear plane", "shear_minimised_coulomb": "…, Coulomb friction only",
+    "shear_minimised_edge": "…, edge force", "shear_minimised_edge_no_drag": "…, edge without drag",
+    "shear_minimised_edge_free_drag": "…, edge with free drag",
+    "shear_minimised_edge_chip_ratio": "…, edge and chip ratio",
     "chip_force": "chip-force balance", "plastic_bending": "plastic bending", "atkins": "energy balance",
     "intercept_linear": "linear intercept", "intercept_quadratic": "quadratic intercept",
     "intercept_exponential": "exponential intercept", "intercept_model": "square-root-aware intercept",
@@ -92,6 +96,13 @@ METHOD_LABELS = {
 
 def label_of(method):
     return METHOD_LABELS.get(method, method.replace("_", " "))
+
+
+def with_labels(text):
+    """A sentence about methods, with their names as the figures write them."""
+    for name in sorted(METHOD_LABELS, key=len, reverse=True):
+        text = re.sub(rf"\b{name}\b", METHOD_LABELS[name].replace("…", "minimised shear plane"), text)
+    return text
 
 
 def family_of(method):
@@ -126,10 +137,12 @@ def toughness_rows(calibration):
                "interval": parameter.get("interval"), "unit": parameter["unit"]}
         rows.append(row)
         if parameter.get("interval_over_assumptions"):
-            rows.append(row | {"label": label + ", whatever the edge", "interval": parameter["interval_over_assumptions"]})
+            rows.append(row | {"label": label + ", whatever the edge",
+                               "interval": parameter["interval_over_assumptions"]})
     for name, method in ((calibration.reduction or {}).get("methods") or {}).items():
         parameter = ((method or {}).get("parameters") or {}).get("toughness")
         if parameter and finite(parameter.get("value")):
             rows.append({"label": label_of(name), "family": family_of(name), "value": parameter["value"],
-                         "interval": parameter.get("interval"), "unit": parameter["unit"]})
+                         "interval": parameter.get("interval"), "unit": parameter["unit"],
+                         "rejected": (method.get("verdict") or {}).get("fit") == "rejected"})
     return rows

@@ -5,9 +5,10 @@ import math
 from markupsafe import Markup
 
 from . import fit_figures
-from .calibration import label_of, measured_points, method_curves, simulated_curve, toughness_rows
+from .calibration import label_of, measured_points, method_curves, simulated_curve, toughness_rows, with_labels
 from .cut_page import add_cut_figures, facts_of
-from .page import Page, chip, finite, html, integer, interval_text, large_unit, number, pretty_unit, prose, symbol, with_error
+from .page import (Page, chip, finite, html, integer, interval_text, large_unit, number, pretty_unit, prose, symbol,
+                   with_error)
 
 SYMBOLS = {"toughness": symbol("G", "c"), "yield_stress": symbol("σ", "y"), "friction": symbol("μ"),
            "edge_force": symbol("F", "b"), "strength": symbol("σ", "c"), "adhesion_toughness": symbol("G", "a"),
@@ -49,8 +50,8 @@ def _parameters(page, calibration):
     for name, p in result["parameters"].items():
         rows.append([_name(name), _value(p), _interval(p),
                      _track(p), _verdict(p.get("verdict"))])
-    section.table(["parameter", "estimate ± standard error", "95 % interval", "within the search’s bounds", "verdict"],
-                  rows, numeric=(1, 2))
+    heads = ["parameter", "estimate ± standard error", "95 % interval", "within the search’s bounds", "verdict"]
+    section.table(heads, rows, numeric=(1, 2))
     if finite(result.get("chi2")):
         section.text(html("Misfit {} = {} on {} degrees of freedom{}.", Markup("χ²"), number(result["chi2"]),
                           result.get("degrees_of_freedom", "?"), _scale_remark(result)))
@@ -96,7 +97,8 @@ def _track(p):
         return 100 * (scale(inside) - scale(bounds[0])) / (scale(bounds[1]) - scale(bounds[0]))
 
     left, right = place(interval[0], bounds[0]), place(interval[1], bounds[1])
-    return html('<div class="track" title="{} … {} {}"><b style="left:{}%;width:{}%"></b><i style="left:{}%"></i></div>',
+    return html('<div class="track" title="{} … {} {}"><b style="left:{}%;width:{}%"></b>'
+                '<i style="left:{}%"></i></div>',
                 number(bounds[0]), number(bounds[1]), pretty_unit(p["unit"]), f"{left:.1f}", f"{right - left:.1f}",
                 f"{place(p['value'], bounds[0]):.1f}")
 
@@ -115,9 +117,9 @@ def _fit(page, calibration):
     if not picture:
         section.missing("The result holds no measured cuts.")
         return
-    section.figure(picture, "Squares are measurements with their standard error. The simulation is drawn through the depths "
-                            "that were simulated; closed forms and extrapolations run on to zero depth, where they are "
-                            "read as a toughness.")
+    section.figure(picture, "Squares are measurements with their standard error. The simulation is drawn through the "
+                            "depths that were simulated; closed forms and extrapolations run on to zero depth, where "
+                            "they are read as a toughness.")
     if calibration.reduction is None:
         section.missing("reduction.json is not there: closed forms and intercepts are left out.")
 
@@ -129,14 +131,16 @@ def _intercepts(page, calibration):
     if not picture:
         section.missing("Neither the calibration nor a simple method estimates a toughness here.")
         return
-    section.figure(picture, "Estimates with 95 % intervals; an arrow marks an interval that leaves the axis. A straight line "
+    section.figure(picture, "Estimates with 95 % intervals; an arrow marks an interval that leaves the axis, a hollow "
+                            "dot a method that its own fit rejects. A straight line "
                             "through forces overshoots: with friction the force approaches its intercept like the square "
                             "root of the depth.")
     reduction = calibration.reduction or {}
-    section.warnings([prose(line) for line in reduction.get("warnings", [])])
+    section.warnings([prose(with_labels(line)) for line in reduction.get("warnings", [])])
     methods = reduction.get("methods") or {}
-    verdicts = [[label_of(name), html('<span class="why">{}</span>', prose((method.get("verdict") or {}).get("statement", "")))]
-                for name, method in methods.items()]
+    statements = {name: (method.get("verdict") or {}).get("statement", "") for name, method in methods.items()}
+    verdicts = [[label_of(name), html('<span class="why">{}</span>', prose(with_labels(statement)))]
+                for name, statement in statements.items()]
     if verdicts:
         section.table(["method", "what its fit says"], verdicts)
 
@@ -146,8 +150,8 @@ def _residuals(page, calibration):
     points = measured_points(calibration.result)
     picture = fit_figures.residuals(points) if points else None
     if picture:
-        section.figure(picture, "Measured minus fitted, over the standard deviation of the difference; the band holds 95 % of "
-                                "what scatter alone would give.")
+        section.figure(picture, "Measured minus fitted, over the standard deviation of the difference; the band holds "
+                                "95 % of what scatter alone would give.")
     else:
         section.missing("The result holds no residuals.")
 
@@ -177,8 +181,8 @@ def _edge(page, calibration):
     if not alternatives:
         return
     section = page.section("With both assumptions on the edge force")
-    section.text("How much of the force on the worn edge adds to the cutting force is not measured. What the fit says under "
-                 "each assumption:")
+    section.text("How much of the force on the worn edge adds to the cutting force is not measured. What the fit says "
+                 "under each assumption:")
     fits = [result] + alternatives
     rows = []
     for name, fitted in result["parameters"].items():
@@ -217,7 +221,7 @@ def _search(page, calibration):
     for entry in entries:
         entry["parameters"] = {PLAIN.get(name, name): value for name, value in entry["parameters"].items()}
     section.figure(fit_figures.trace(entries, [PLAIN.get(name, name) for name in names]),
-                   html("{} Start: {}.", f"{len(entries)} steps.", calibration.result.get("start_origin", "as the job says")))
+                   html("{} steps. Start: {}.", len(entries), calibration.result.get("start_origin", "as the job says")))
 
 
 def _cost(page, calibration):
@@ -228,7 +232,8 @@ def _cost(page, calibration):
     speeds = [cut.result["cost"]["particle_steps_per_s"] for cut in calibration.cuts]
     speeds = [speed for speed in speeds if finite(speed)]
     if speeds:
-        facts.append(("speed", f"{number(sum(speeds) / len(speeds) / 1e6)} million/s", "particle-steps per second and run"))
+        mean = sum(speeds) / len(speeds)
+        facts.append(("speed", f"{number(mean / 1e6)} million/s", "particle-steps per second and run"))
     page.section("Cost").facts([fact for fact in facts if fact[1] != "–"])
 
 

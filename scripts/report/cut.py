@@ -7,9 +7,10 @@ from pathlib import Path
 import h5py
 import numpy as np
 from matplotlib.patches import Polygon
+from matplotlib.tri import Triangulation
 
 from .page import large_unit, with_error
-from .style import (ACCENT, ACCENT_LIGHT, ACCENT_PALE, INK, QUIET, RULE, SAND, STRAIN, WARM, WARM_LIGHT, figure,
+from .style import (ACCENT, ACCENT_LIGHT, ACCENT_PALE, INK, QUIET, SAND, STRAIN, WARM, WARM_LIGHT, figure,
                     light_grid, svg)
 
 # In the file forces are N/mm and energies N mm/mm; the page speaks N/m and J/m.
@@ -73,7 +74,8 @@ def force_history(cut):
             if error:
                 axes.fill_between([start, travel[-1]], value - 2 * error, value + 2 * error, color=colour, alpha=0.25,
                                   linewidth=0)
-        axes.annotate(f"{label} = {with_error(value, error, unit)}", (travel[-1], value), xytext=(10, 0), textcoords="offset points", va="center", color=colour,
+        axes.annotate(f"{label} = {with_error(value, error, unit)}", (travel[-1], value), xytext=(10, 0),
+                      textcoords="offset points", va="center", color=colour,
                       annotation_clip=False)
     if start is not None:
         axes.axvspan(start, travel[-1], color=ACCENT_PALE, zorder=0, linewidth=0)
@@ -102,12 +104,16 @@ def chip_picture(cut):
     axes.set_xlim(left, right)
     axes.set_ylim(bottom, top)
     points_per_mm = (width - 130) / (right - left)
-    dots = axes.scatter(x[inside], y[inside], c=strain[inside], s=(1.15 * tool["particle_spacing"] * points_per_mm) ** 2, marker="s",
-                        linewidths=0, cmap=STRAIN, vmin=0, vmax=_readable_maximum(strain[inside]), rasterized=True)
-    for face, colour in [("upper", WARM), ("lower", WARM)]:
-        points = cut.faces[face]
-        shown = (points[:, 0] > left) & (points[:, 0] < right)
-        axes.plot(points[shown, 0], points[shown, 1], color=colour, linewidth=1.2)
+    colours = dict(cmap=STRAIN, vmin=0, vmax=_readable_maximum(strain[inside]), rasterized=True)
+    spacing = tool["particle_spacing"]
+    for side in (1, -1):
+        chosen = inside & (cut.particles["side"] == side)
+        _fill_between_particles(axes, position[chosen], strain[chosen], 3.2 * spacing, colours)
+    dots = axes.scatter(x[inside], y[inside], c=strain[inside], s=(1.15 * spacing * points_per_mm) ** 2, marker="s",
+                        linewidths=0, **colours)
+    for points in cut.faces.values():
+        shown = (points[:, 0] > left) & (points[:, 0] < right) & (points[:, 1] < y.max())  # not past the chip's end
+        axes.plot(points[shown, 0], points[shown, 1], color=WARM, linewidth=1.2)
     axes.add_patch(Polygon(_tool_outline(tool, left, top, bottom), closed=True, facecolor="#f4f1ea", edgecolor=INK,
                            linewidth=1.2, zorder=0.5))
     inward = sum(_tool_faces(tool))  # half-way between the rake face and the clearance face
@@ -119,6 +125,17 @@ def chip_picture(cut):
     bar.outline.set_visible(False)
     bar.set_label("equivalent plastic strain")
     return svg(fig, "the chip at the end of the cut, coloured by plastic strain")
+
+
+def _fill_between_particles(axes, position, strain, reach, colours):
+    """Where the chip has stretched, rows of particles stand apart though the material does not: join neighbours."""
+    if len(position) < 3:
+        return
+    mesh = Triangulation(position[:, 0], position[:, 1])
+    corners = position[mesh.triangles]
+    edges = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)
+    mesh.set_mask(edges.max(axis=1) > reach)
+    axes.tripcolor(mesh, strain, shading="gouraud", **colours)
 
 
 def _readable_maximum(strain):

@@ -22,7 +22,8 @@ def page_of_cut(cut):
     faces = result["faces"]
     section.table(["force on a tool face, N/m", "normal", "along the face"],
                   [["rake face", _bare(faces["rake_normal"]), _bare(faces["rake_tangential"])],
-                   ["clearance side", _bare(faces["bottom_normal"]), _bare(faces["bottom_tangential"])]], numeric=(1, 2))
+                   ["clearance side", _bare(faces["bottom_normal"]), _bare(faces["bottom_tangential"])]],
+                  numeric=(1, 2))
     add_cut_figures(page, cut)
 
     cost = result["cost"]
@@ -36,31 +37,32 @@ def page_of_cut(cut):
     return page
 
 
-def add_cut_figures(page, cut, heading="{}"):
+def add_cut_figures(page, cut):
     """Force history, picture and ledger, each with a note in its place when the file has nothing to draw."""
-    section = page.section(heading.format("Force along the cut"))
+    section = page.section("Force along the cut")
     if len(cut.history["travel"]) > 1:
         section.figure(drawing.force_history(cut), html(
             "Means over whole cell crossings of the tool. Shaded: the part found steady, from which the dashed mean is "
-            "taken. Crack tip {} mm ahead of the tool tip.", number(cut.result["crack_lead"])))
+            "taken. The crack is broken {} the tool tip.", _lead(cut.result["crack_lead"])))
     else:
         section.missing("The run ended before the tool had crossed a cell.")
 
-    section = page.section(heading.format("The chip"))
+    section = page.section("The chip")
     picture = drawing.chip_picture(cut)
     if picture:
-        section.figure(picture, "Particles at the last instant, coloured by equivalent plastic strain; the faces of the "
-                                "crack in orange, the tool outlined (its clearance side is only sketched).")
+        section.figure(picture, "Particles at the last instant, coloured by equivalent plastic strain; the faces of "
+                                "the crack in orange, the tool outlined (its clearance side is only sketched).")
     else:
         section.missing("The file holds no particles.")
 
-    section = page.section(heading.format("Where the energy went"))
+    section = page.section("Where the energy went")
     ledger = drawing.energy_ledger(cut)
     if ledger:
         book = cut.result["ledger"]
         section.figure(ledger, html(
             "Tool work {} J per metre of width; what the entries leave unexplained is {} J/m ({} %).",
-            number(book["tool_work"]), number(book["residue"]), number(100 * book["residue"] / book["tool_work"], digits=2)))
+            number(book["tool_work"]), number(book["residue"]),
+            number(100 * book["residue"] / book["tool_work"], digits=2)))
     else:
         section.missing("The tool has done no work.")
 
@@ -83,6 +85,12 @@ def facts_of(result):
         ("ledger’s residue", f"{number(percent(residue), digits=2)} %", "of the tool’s work, unexplained"),
         ("wall time", f"{number(result['cost']['wall_s'])} s", ""),
     ]
+
+
+def _lead(millimetres):
+    if not finite(millimetres):
+        return "up to"
+    return f"up to {number(abs(millimetres))} mm {'ahead of' if millimetres >= 0 else 'behind'}"
 
 
 def percent(share):

@@ -6,8 +6,8 @@ import numpy as np
 from matplotlib.ticker import MaxNLocator
 
 from .page import finite, interval_text, large_unit, number, pretty_unit
-from .style import (ACCENT, ACCENT_LIGHT, ACCENT_PALE, BALANCE, INK, QUIET, RULE, SAND, WARM, WARM_LIGHT, figure, light_grid,
-                    svg)
+from .style import (ACCENT, ACCENT_LIGHT, ACCENT_PALE, BALANCE, INK, QUIET, RULE, SAND, WARM, WARM_LIGHT, figure,
+                    light_grid, svg)
 
 OBSERVABLES = {"F_c": ("cutting force F_c", "N/m"), "F_t": ("transverse force F_t", "N/m"),
                "chip_ratio": ("chip thickness / depth", "1")}
@@ -15,8 +15,8 @@ OBSERVABLES = {"F_c": ("cutting force F_c", "N/m"), "F_t": ("transverse force F_
 # Three families of methods, each with its own hand: the simulation is the one to look at.
 LOOK = {
     "simulation": [dict(color=ACCENT, linewidth=2.4)],
-    "closed form": [dict(color=INK, linewidth=1.3, linestyle=(0, (5, 2))), dict(color=INK, linewidth=1.3, linestyle=(0, (1, 1.6))),
-                    dict(color=QUIET, linewidth=1.3, linestyle=(0, (5, 2, 1, 2))), dict(color=QUIET, linewidth=1.3)],
+    "closed form": [dict(color=colour, linewidth=1.3, linestyle=dashes) for colour in (INK, "#8d9aa0")
+                    for dashes in ((0, (5, 2)), (0, (1, 1.6)), (0, (5, 2, 1, 2)), "solid")],
     "intercept": [dict(color=WARM, linewidth=1.3), dict(color=WARM, linewidth=1.3, linestyle=(0, (5, 2))),
                   dict(color=WARM_LIGHT, linewidth=1.6), dict(color=SAND, linewidth=1.6, linestyle=(0, (5, 2)))],
 }
@@ -42,7 +42,7 @@ def measured_and_fitted(points, curves):
         light_grid(ax)
         taken = {family: 0 for family in LOOK}
         for curve in curves:
-            look = LOOK[curve["family"]][taken[curve["family"]] % 4]
+            look = LOOK[curve["family"]][taken[curve["family"]] % len(LOOK[curve["family"]])]
             taken[curve["family"]] += 1
             if key not in curve:
                 continue
@@ -77,7 +77,7 @@ def _around_data(ax, y, error, from_zero):
 def intercept_comparison(rows):
     """Toughness by every method with its 95 % interval, on one axis.
 
-    rows: [{"label", "family", "value", "interval": (lo, hi) or None, "unit"}] in the order to be shown.
+    rows: [{"label", "family", "value", "interval": (lo, hi) or None, "unit", "rejected"}] in the order to be shown.
     """
     rows = [row for row in rows if finite(row["value"])]
     if not rows:
@@ -102,7 +102,8 @@ def intercept_comparison(rows):
             for end, cut_off, mark in [(low, lo < low, "<"), (high, hi > high, ">")]:
                 if cut_off:
                     ax.plot([end], [y], marker=mark, color=colour, markersize=7, clip_on=False)
-        ax.plot([row["value"] * factor], [y], "o", color=colour, markersize=8 if row["family"] == "simulation" else 6.5)
+        ax.plot([row["value"] * factor], [y], "o", color=colour, markersize=8 if row["family"] == "simulation" else 6.5,
+                markerfacecolor="white" if row.get("rejected") else colour)
         text = number(row["value"] * factor)
         if row["interval"]:
             text += f"  [{interval_text(row['interval'], factor, 2)}]"

@@ -108,9 +108,12 @@ def interval_text(interval, factor=1.0, digits=3):
 
 def prose(text):
     """Plain text from a result, with its symbols set as symbols."""
-    parts = re.split(r"\b([FG])_([a-zA-Z])\b|(chi2)", text.replace("J/m^2", "J/m²"))
+    text = re.sub(r"\b\d(\.\d+)?e\+\d+\b", lambda m: integer(float(m[0])), text)
+    text = text.replace("J/m^2", "J/m²").replace("+-", "±")
+    parts = re.split(r"\b([FG])_([a-zA-Z])\b|(chi2)", text)
     out = Markup("")
-    for plain, letter, index, square in zip(parts[0::4], parts[1::4] + [None], parts[2::4] + [None], parts[3::4] + [None]):
+    ends = [None]
+    for plain, letter, index, square in zip(parts[0::4], parts[1::4] + ends, parts[2::4] + ends, parts[3::4] + ends):
         out += escape(plain)
         out += symbol(letter, index) if letter else escape("χ²" if square else "")
     return out
