@@ -23,7 +23,12 @@ std::vector<Stage> plan(const Scene& scene) {
   };
   add("project", "grid velocities p/m of both sides of the crack plane", project_velocity);
   add("markers", "crack-face markers follow the projected velocity of their side", move_markers);
-  add("tool", "the tool advances", [&scene](State& state) { move_tool(state, scene.cut); });
+  // A sharp tip runs inside the opened crack, clear of the lower face by a fiftieth of the depth.
+  const double lift = scene.edge_contact ? 0.0 : (getenv("LIFT") ? atof(getenv("LIFT")) : 0.02) * scene.cut.depth;
+  add("tool", "the tool advances and its tip follows the lower face", [&scene, lift](State& state) {
+    move_tool(state, scene.cut);
+    follow_face(state, scene.cut.depth, lift);
+  });
   add("stress", "velocity gradients, J2 stresses (stress first), internal forces",
       [&scene](State& state) { update_stress(state, scene.material); });
   add("cohesion", "cohesive tractions between the faces; pairs break at the mixed-mode criterion",
@@ -37,12 +42,12 @@ std::vector<Stage> plan(const Scene& scene) {
         [&scene, stiffness, shear_yield](State& state) {
           rub_rake_face(state, scene.tool.rake, *scene.friction, shear_yield, stiffness);
         });
-  if (scene.edge_contact) {
-    add("edge height", "the edge follows the freshly cut face",
-        [&scene](State& state) { follow_face(state, scene.cut.depth); });
+  if (scene.edge_contact)
     add("edge", "the worn edge presses on the lower side",
-        [&scene, stiffness](State& state) { press_edge(state, *scene.edge_contact, stiffness); });
-  }
+        [&scene, stiffness](State& state) { press_edge(state, *scene.edge_contact, scene.tool.clearance, stiffness); });
+  else
+    add("underside", "the lower face cannot rise into the tool",
+        [&scene, stiffness](State& state) { block_underside(state, scene.tool.clearance, stiffness); });
   add("spread", "marker forces go to the nodes they were interpolated from", spread_marker_forces);
   add("accelerate", "new grid velocities under the fixed boundary", accelerate);
   add("advance",

@@ -7,30 +7,7 @@
 
 namespace kerf::forward {
 
-namespace {
-
-/// Mean height of the lower face 0.1 h ... 0.3 h ahead of the tip.
-double mean_height_ahead(const State& state, double depth) {
-  const Face& face = state.crack.face[below];
-  double sum = 0.0, count = 0.0;
-  for (std::size_t k = 0; k < state.crack.size(); ++k) {
-    const double ahead = face.x[k] - state.tool.x;
-    if (face.inverse_mass[k] == 0.0 || ahead < 0.1 * depth || ahead > 0.3 * depth) continue;
-    sum += face.y[k];
-    count += 1.0;
-  }
-  return count > 0.0 ? sum / count : state.tool.y;
-}
-
-}  // namespace
-
-void follow_face(State& state, double depth) {
-  const double height = mean_height_ahead(state, depth);
-  state.tool.vertical_speed = state.tool.speed * (height - state.tool.y) / (0.3 * depth);
-  state.tool.y += state.step * state.tool.vertical_speed;
-}
-
-void press_edge(State& state, const EdgeContact& edge, double stiffness) {
+void press_edge(State& state, const EdgeContact& edge, double clearance, double stiffness) {
   Crack& crack = state.crack;
   const Face& face = crack.face[below];
   const double radius = edge.edge_radius, length = crack.spacing;
@@ -41,7 +18,7 @@ void press_edge(State& state, const EdgeContact& edge, double stiffness) {
     if (face.inverse_mass[k] == 0.0) continue;
     const double x = face.x[k] - centre_x, y = face.y[k] - centre_y;
     // Direction from the arc's centre, as an angle from straight down, ahead positive; beyond the ends: their tangents.
-    const double angle = std::clamp(std::atan2(x, -y), -edge.clearance, separation);
+    const double angle = std::clamp(std::atan2(x, -y), -clearance, separation);
     const double normal_x = std::sin(angle), normal_y = -std::cos(angle);  // from the tool into the base
     const double distance = x * normal_x + y * normal_y - radius;
     if (distance >= 0.0) {

@@ -12,6 +12,20 @@ void move_tool(State& state, const Cut& cut) {
   state.contact_energy = 0.0;
 }
 
+void follow_face(State& state, double depth, double lift) {
+  const Face& face = state.crack.face[below];
+  double sum = 0.0, count = 0.0;
+  for (std::size_t k = 0; k < state.crack.size(); ++k) {
+    const double ahead = face.x[k] - state.tool.x;
+    if (face.inverse_mass[k] == 0.0 || ahead < 0.1 * depth || ahead > 0.3 * depth) continue;
+    sum += face.y[k];
+    count += 1.0;
+  }
+  const double height = count > 0.0 ? sum / count + lift : state.tool.y;
+  state.tool.vertical_speed = state.tool.speed * (height - state.tool.y) / (0.3 * depth);
+  state.tool.y += state.step * state.tool.vertical_speed;
+}
+
 void push_face(State& state, Side side, std::size_t k, double x, double y) {
   Face& face = state.crack.face[side];
   face.force_x[k] += x;
@@ -19,6 +33,23 @@ void push_face(State& state, Side side, std::size_t k, double x, double y) {
   state.force.on_work_x += x;
   state.force.on_work_y += y;
   state.work.tool += (x * state.tool.speed + y * state.tool.vertical_speed) * state.step;
+}
+
+void block_underside(State& state, double clearance, double stiffness) {
+  const Crack& crack = state.crack;
+  const Face& face = crack.face[below];
+  const double normal_x = -std::sin(clearance), normal_y = -std::cos(clearance);  // from the tool into the base
+  const double length = crack.spacing;
+  for (std::size_t k = 0; k < crack.size(); ++k) {
+    if (face.inverse_mass[k] == 0.0 || face.x[k] > state.tool.x) continue;
+    const double distance = (face.x[k] - state.tool.x) * normal_x + (face.y[k] - state.tool.y) * normal_y;
+    if (distance >= 0.0) continue;
+    const double pressure = -stiffness * distance;
+    push_face(state, below, k, pressure * normal_x * length, pressure * normal_y * length);
+    state.contact_energy += 0.5 * pressure * -distance * length;
+    state.force.bottom_normal += pressure * length;
+    state.force.penetration = std::max(state.force.penetration, -distance);
+  }
 }
 
 namespace {

@@ -39,7 +39,9 @@ std::vector<Block> declare() {
       {.path = "tool",
        .variant = "",
        .meaning = "a rigid, sharp tool; its tip runs in the crack plane",
-       .parameters = {number("rake", "deg", -30, 75, "rake angle alpha, from the normal of the crack plane")},
+       .parameters = {number("rake", "deg", -30, 75, "rake angle alpha, from the normal of the crack plane"),
+                      number("clearance", "deg", 0.5, 45, "clearance angle, between clearance face and crack plane")
+                          .or_else("12 deg")},
        .required = true},
       {.path = "friction",
        .variant = "",
@@ -55,7 +57,6 @@ std::vector<Block> declare() {
        .parameters =
            {number("press_in", "1", 1e-4, 0.2, "depth to which the edge presses into the face, in depths of cut"),
             number("edge_radius", "1", 0.05, 10.0, "radius of the lower edge, in depths of cut"),
-            number("clearance", "deg", 0.5, 45, "clearance angle").or_else("12 deg"),
             number("coefficient", "1", 0.0, 2.0, "coefficient of friction of the clearance side").or_else("0")}},
       {.path = "pic_damping",
        .variant = "",
@@ -128,23 +129,24 @@ Scene read_scene(const Document& document) {
   const Values& window = contents.at("window");
   const Values& resolution = contents.at("resolution");
   const Values& steady = contents.at("steady_state");
-  Scene scene{.title = contents.at("").text("title"),
-              .material = laws::J2::from(contents.at("material")),
-              .cohesive = read_cohesive(contents),
-              .cut = read_cut(contents.at("cut")),
-              .tool = {.rake = contents.at("tool").number("rake")},
-              .friction = {},
-              .edge_contact = {},
-              .pic_damping = {},
-              .window = {.ahead = window.number("ahead"),
-                         .behind = window.number("behind"),
-                         .below = window.number("below"),
-                         .above = window.number("above")},
-              .resolution = {.cells_through_chip = whole_number(resolution, "cells_through_chip"),
-                             .particles_per_cell_side = whole_number(resolution, "particles_per_cell_side"),
-                             .markers_per_cell = whole_number(resolution, "markers_per_cell"),
-                             .courant_number = resolution.number("courant_number")},
-              .steady_state = {.tolerance = steady.number("tolerance"), .not_before = steady.number("not_before")}};
+  Scene scene{
+      .title = contents.at("").text("title"),
+      .material = laws::J2::from(contents.at("material")),
+      .cohesive = read_cohesive(contents),
+      .cut = read_cut(contents.at("cut")),
+      .tool = {.rake = contents.at("tool").number("rake"), .clearance = contents.at("tool").number("clearance")},
+      .friction = {},
+      .edge_contact = {},
+      .pic_damping = {},
+      .window = {.ahead = window.number("ahead"),
+                 .behind = window.number("behind"),
+                 .below = window.number("below"),
+                 .above = window.number("above")},
+      .resolution = {.cells_through_chip = whole_number(resolution, "cells_through_chip"),
+                     .particles_per_cell_side = whole_number(resolution, "particles_per_cell_side"),
+                     .markers_per_cell = whole_number(resolution, "markers_per_cell"),
+                     .courant_number = resolution.number("courant_number")},
+      .steady_state = {.tolerance = steady.number("tolerance"), .not_before = steady.number("not_before")}};
   if (contents.has("friction")) {
     const Values& friction = contents.at("friction");
     scene.friction = {.coefficient = friction.number("coefficient"), .yield_cap = friction.number("yield_cap")};
@@ -153,7 +155,6 @@ Scene read_scene(const Document& document) {
     const Values& edge = contents.at("edge_contact");
     scene.edge_contact = {.press_in = edge.number("press_in") * scene.cut.depth,
                           .edge_radius = edge.number("edge_radius") * scene.cut.depth,
-                          .clearance = edge.number("clearance"),
                           .friction = edge.number("coefficient")};
   }
   if (contents.has("pic_damping")) scene.pic_damping = {.rate = contents.at("pic_damping").number("rate")};

@@ -28,7 +28,8 @@ struct Cut {
 };
 
 struct Tool {
-  double rake;  ///< alpha, from the crack plane's normal
+  double rake;       ///< alpha, from the crack plane's normal
+  double clearance;  ///< between clearance face and crack plane
 };
 
 /// Coulomb friction on the rake face, tau = min(mu p, cap sigma_y/sqrt(3)).
@@ -41,7 +42,6 @@ struct Friction {
 struct EdgeContact {
   double press_in;     ///< delta: how far the edge sits below the face that comes towards it
   double edge_radius;  ///< R_L of the lower edge
-  double clearance;    ///< angle between clearance face and crack plane
   double friction;     ///< Coulomb coefficient there
 };
 
