@@ -85,14 +85,14 @@ struct Residuals {
 };
 
 template <class Shape>
-MethodResult extrapolate(const Measurements& measurements, std::vector<Unknown> unknowns,
-                         std::vector<std::vector<double>> starts, const std::optional<FrictionLine>& line = {}) {
+MethodResult extrapolate(const Measurements& measurements, const std::vector<Unknown>& unknowns,
+                         const std::vector<std::vector<double>>& starts, const std::optional<FrictionLine>& line = {}) {
   MethodResult result;
   const int nuisances = line ? 2 : 0;
-  result.fit = solve({.unknowns = std::move(unknowns),
+  result.fit = solve({.unknowns = unknowns,
                       .residuals = residual_block<Shape::unknowns>(Residuals<Shape>{&measurements, line},
                                                                    measurements.size() + nuisances),
-                      .starts = std::move(starts),
+                      .starts = starts,
                       .noise = measurements.noise(1),
                       .nuisances = nuisances});
   if (!result.fit.converged) return result;
@@ -158,7 +158,7 @@ MethodResult fit_model(const Measurements& measurements, const FitOptions&) {
   if (lines.empty()) {
     auto result = extrapolate<SquareRootFromForce>(
         measurements, {toughness, yield_stress, {.name = "friction", .unit = "1", .lower = -0.9, .upper = 20.0}},
-        std::move(starts));
+        starts);
     result.warnings.push_back("without a friction line the cutting force alone has to tell friction from toughness");
     return result;
   }
@@ -167,7 +167,7 @@ MethodResult fit_model(const Measurements& measurements, const FitOptions&) {
                                   yield_stress,
                                   {.name = "slope", .unit = "1", .positive = false},
                                   {.name = "offset", .unit = "N/mm", .positive = false}},
-                                 std::move(starts), lines.front());
+                                 starts, lines.front());
 }
 
 std::string unsuited(const Measurements& measurements, const FitOptions&) {

@@ -190,7 +190,10 @@ Fit solve(const LeastSquares& problem) {
     parameter.lower = limits[at].lower;
     parameter.upper = limits[at].upper;
     parameter.verdict = fit.determined() ? judge(parameter, unknown.positive) : Verdict::not_measurable;
-    if (unknown.positive && parameter.verdict != Verdict::negative && parameter.verdict != Verdict::not_measurable) {
+    if (parameter.verdict == Verdict::not_measurable) {
+      parameter.lower = -infinity;
+      parameter.upper = infinity;
+    } else if (unknown.positive && parameter.verdict != Verdict::negative) {
       parameter.lower = std::max(parameter.lower, 0.0);
     }
     fit.parameters.push_back(std::move(parameter));

@@ -62,7 +62,9 @@ double limit(Walk& walk, const LeastSquares& problem, const Minimum& best, int u
   const double end = sign > 0.0 ? declared.upper : declared.lower;
   double inner = centre;
   double inner_excess = -1.0;
-  for (double reach = step; reach < 1e6 * step; reach *= 1.7) {
+  constexpr int strides = 27;  // 1.7^26 is about 10^6
+  double reach = step;
+  for (int stride = 0; stride < strides; ++stride, reach *= 1.7) {
     double outer = centre + sign * reach;
     const bool at_end = sign * (outer - end) >= 0.0;
     if (at_end) outer = end;

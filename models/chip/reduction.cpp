@@ -24,6 +24,16 @@ void warn_about_data(const Measurements& data, std::vector<std::string>& warning
         "fit "
         "sets its errors");
   }
+  int repeats = data.cuts().front().repeats;
+  for (const auto& cut : data.cuts()) repeats = std::min(repeats, cut.repeats);
+  constexpr int enough_repeats = 6;
+  if (data.errors_known() && repeats > 1 && repeats < enough_repeats) {
+    warnings.push_back(
+        fmt::format("standard deviations from {} repeats are themselves known to {:.0f} % only: weights made of them "
+                    "give intervals "
+                    "that are too narrow and reject too often, the more so the more depths there are",
+                    repeats, 100.0 / std::sqrt(2.0 * (repeats - 1))));
+  }
   double radius = 0.0;
   for (const auto& cut : data.cuts()) radius = std::max(radius, cut.tool_radius.value_or(0.0));
   if (radius > 0.1 * data.depths().front()) {
