@@ -4,8 +4,9 @@
 
 namespace kerf::commands {
 
-/// One subcommand per file. Each adds itself to the application and, when parsed, stores in `exit_code` what the process
-/// returns; results go to standard output, progress to standard error, errors are thrown (see models/base/error.hpp).
+/// One subcommand per file. Each adds itself to the application and, when parsed, stores in `exit_code` what the
+/// process returns; results go to standard output, progress to standard error, errors are thrown (see
+/// models/base/error.hpp).
 void add_predict(CLI::App& app, int& exit_code);
 void add_reduce(CLI::App& app, int& exit_code);
 void add_simulate(CLI::App& app, int& exit_code);
