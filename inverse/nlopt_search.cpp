@@ -77,8 +77,9 @@ SearchResult search_with(nlopt::algorithm algorithm, Objective& objective, const
   search.set_lower_bounds(vector(space.lower()));
   search.set_upper_bounds(vector(space.upper()));
   search.set_initial_step(5 * objective.choice().step);
-  search.set_ftol_abs(objective.budget().tolerance);
-  search.set_xtol_abs(objective.choice().step / 8);
+  // Without slopes, one small step says little about what is left: these tolerances are far below the answer's error.
+  search.set_ftol_abs(objective.budget().tolerance / 100);
+  search.set_xtol_abs(objective.choice().step / 100);
   std::vector<double> point = vector(start.point);
   double chi2 = 0;
   nlopt::result outcome = nlopt::FAILURE;

@@ -1,0 +1,189 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "inverse/local_model.hpp"
+#include "inverse/optimiser.hpp"
+#include "inverse/statement.hpp"
+#include "tests/unit/synthetic_cut.hpp"
+
+namespace kerf {
+namespace {
+
+using testing::calibrate;
+using testing::curve_text;
+using testing::job_text;
+using testing::replaced;
+using testing::synthetic_cut;
+using testing::TemporaryFolder;
+using testing::Truth;
+using testing::value;
+using testing::write_job;
+
+const std::vector<double> depths{0.1, 0.2, 0.4, 0.8};
+
+/// Far from the truth (60 MPa, 2 N/mm, 0.3), so that the search has something to do.
+std::string with_starts(std::string job) {
+  job = replaced(job, "lower = \"10 MPa\"", "start = \"120 MPa\"\nlower = \"10 MPa\"");
+  job = replaced(job, "lower = \"100 J/m^2\"", "start = \"800 J/m^2\"\nlower = \"100 J/m^2\"");
+  return replaced(job, "lower = \"0.02\"", "start = \"0.6\"\nlower = \"0.02\"");
+}
+
+struct Method {
+  const char* name;
+  int max_runs;
+  double tolerance;  ///< relative, of the recovered parameters
+};
+
+class EveryOptimiser : public ::testing::TestWithParam<Method> {};
+
+TEST_P(EveryOptimiser, RecoversATwin) {
+  const TemporaryFolder folder;
+  const auto [name, max_runs, tolerance] = GetParam();
+  const std::string extra = fmt::format("[optimiser]\nmethod = \"{}\"\n[budget]\nmax_runs = {}\n", name, max_runs);
+  const auto outcome = calibrate(write_job(folder, with_starts(job_text) + extra), folder / "journal.jsonl");
+  EXPECT_TRUE(outcome.calibration.fit.converged) << outcome.calibration.fit.reason;
+  EXPECT_EQ(outcome.calibration.exit_code, ExitCode::success);
+  EXPECT_NEAR(value(outcome.calibration, "yield_stress"), 60, 60 * tolerance);
+  EXPECT_NEAR(value(outcome.calibration, "toughness"), 2, 2 * tolerance);
+  EXPECT_NEAR(value(outcome.calibration, "friction"), 0.3, 0.3 * tolerance);
+  EXPECT_LE(outcome.runs, static_cast<std::size_t>(max_runs));
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, EveryOptimiser,
+                         ::testing::Values(Method{"gauss_newton", 100, 0.01}, Method{"levenberg_marquardt", 400, 0.01},
+                                           Method{"bobyqa", 2000, 0.05}, Method{"sbplx", 6000, 0.05},
+                                           Method{"crs2", 12000, 0.1}));
+
+TEST(Optimiser, NamesAreUnique) {
+  std::set<std::string> names;
+  for (const inverse::Optimiser& optimiser : inverse::optimisers()) EXPECT_TRUE(names.insert(optimiser.name).second);
+  EXPECT_THROW(inverse::find_optimiser("steepest"), std::invalid_argument);
+}
+
+TEST(Calibration, AFifthOfTheRunsFailingChangesTheCountOnly) {
+  const TemporaryFolder folder;
+  const inverse::Job job = write_job(folder, with_starts(job_text) + "[budget]\nmax_runs = 400\nfailing_share = 0.5\n",
+                                     curve_text({}, {0.1, 0.15, 0.2, 0.3, 0.4, 0.6, 0.8, 1.0}));
+  const auto outcome = calibrate(job, folder / "journal.jsonl", testing::failing(0.2, synthetic_cut));
+  EXPECT_TRUE(outcome.calibration.fit.converged) << outcome.calibration.fit.reason;
+  EXPECT_NEAR(value(outcome.calibration, "yield_stress"), 60, 0.6);
+  EXPECT_NEAR(value(outcome.calibration, "toughness"), 2, 0.04);
+  EXPECT_NEAR(value(outcome.calibration, "friction"), 0.3, 0.003);
+}
+
+TEST(Calibration, SaysWhenTooManyRunsFail) {
+  const TemporaryFolder folder;
+  const auto outcome = calibrate(write_job(folder), folder / "journal.jsonl", testing::failing(1.1, synthetic_cut));
+  EXPECT_EQ(outcome.calibration.exit_code, ExitCode::too_many_failed_runs);
+  EXPECT_THAT(outcome.calibration.statement, ::testing::HasSubstr("made to fail"));
+  EXPECT_LE(outcome.runs, 8u);
+}
+
+TEST(Calibration, StopsAtItsBudget) {
+  const TemporaryFolder folder;
+  const auto outcome =
+      calibrate(write_job(folder, with_starts(job_text) + "[budget]\nmax_runs = 20\n"), folder / "journal.jsonl");
+  EXPECT_EQ(outcome.calibration.exit_code, ExitCode::not_converged);
+  EXPECT_LE(outcome.runs, 20u);
+  EXPECT_THAT(outcome.calibration.statement, ::testing::HasSubstr("did not converge"));
+}
+
+TEST(Calibration, TheClosedFormIsAGoodStart) {
+  const TemporaryFolder folder;
+  const auto outcome = calibrate(write_job(folder), folder / "journal.jsonl");
+  // The synthetic cut is the closed form, so the start is the answer and only one set of differences is paid.
+  EXPECT_THAT(outcome.calibration.start_origin, ::testing::HasSubstr("yield_stress from the closed form"));
+  EXPECT_EQ(outcome.runs, 4u + 12u);
+  EXPECT_NEAR(value(outcome.calibration, "toughness"), 2, 0.02);
+}
+
+TEST(Calibration, FindsAnEdgeForceAtNoCostAndShowsBothAssumptions) {
+  const TemporaryFolder folder;
+  const std::string edge = "[edge_force]\ncutting_share = \"none\"\n";
+  const auto outcome = calibrate(write_job(folder, with_starts(job_text) + edge, curve_text({.edge_force = 4}, depths)),
+                                 folder / "journal.jsonl");
+  const inverse::Calibration& found = outcome.calibration;
+  EXPECT_NEAR(value(found, "edge_force"), 4, 0.05);
+  EXPECT_NEAR(value(found, "toughness"), 2, 0.04);
+  ASSERT_EQ(found.alternatives.size(), 1u);
+  EXPECT_EQ(found.alternatives[0].share, inverse::CuttingShare::friction);
+  // Friction of the edge takes its part of the cutting force from the toughness.
+  EXPECT_LT(found.alternatives[0].identifiability.find("toughness")->value, value(found, "toughness"));
+  EXPECT_THAT(found.statement, ::testing::HasSubstr("assumption, not a measurement"));
+}
+
+TEST(Calibration, SaysWhatCannotBeMeasured) {
+  const TemporaryFolder folder;
+  // One cutting force cannot tell flow stress from toughness, whatever its error.
+  std::string job = replaced(job_text, R"("F_c", "F_t", "chip_ratio")", R"("F_c")");
+  const inverse::Job read = write_job(folder, with_starts(job), curve_text({}, {0.4}, 0.01));
+  const auto outcome = calibrate(read, folder / "journal.jsonl");
+  EXPECT_EQ(outcome.calibration.exit_code, ExitCode::not_identifiable);
+  const inverse::ParameterEstimate& yield = *outcome.calibration.fit.identifiability.find("yield_stress");
+  EXPECT_TRUE(std::isinf(yield.standard_error));
+  EXPECT_NE(yield.verdict, inverse::Verdict::measured);
+  const auto& values = outcome.calibration.fit.identifiability.singular_values;
+  EXPECT_LT(values[1], 1e-6 * values[0]);
+}
+
+TEST(Calibration, IntervalsCoverTheTruth) {
+  const TemporaryFolder folder;
+  const int trials = 80;
+  int covered = 0;
+  double normalised = 0;
+  for (unsigned seed = 1; seed <= trials; ++seed) {
+    const inverse::Job job = write_job(folder, job_text, curve_text({}, depths, 0.03, seed));
+    const auto outcome = calibrate(job, folder / fmt::format("journal_{}.jsonl", seed));
+    const inverse::ParameterEstimate& p = *outcome.calibration.fit.identifiability.find("toughness");
+    covered += p.interval.lower <= 2 && 2 <= p.interval.upper;
+    normalised += std::pow((p.value - 2) / p.standard_error, 2);
+  }
+  // 95 % of 80 is 76 +- 2; three standard deviations, and nothing above, because scaled errors only widen.
+  EXPECT_GE(covered, 70);
+  EXPECT_LT(normalised / trials, 1.5);
+}
+
+TEST(Verdict, FollowsErrorAndInterval) {
+  using inverse::judge;
+  using inverse::Verdict;
+  const inverse::Interval bounds{1, 100};
+  EXPECT_EQ(judge(10, 1, {8, 12}, bounds), Verdict::measured);
+  EXPECT_EQ(judge(10, 6, {4, 30}, bounds), Verdict::bounded);
+  EXPECT_EQ(judge(10, 2, {4, 40}, bounds), Verdict::bounded) << "a lopsided interval is wide too";
+  EXPECT_EQ(judge(10, 1, {1, 12}, bounds), Verdict::bounded_above);
+  EXPECT_EQ(judge(10, 1, {8, 100}, bounds), Verdict::bounded_below);
+  EXPECT_EQ(judge(10, 90, {1, 100}, bounds), Verdict::not_measurable);
+}
+
+/// A cut whose force halves when the crack runs ahead of the tool, as soft materials do.
+forward::CutResult two_branches(const forward::Scene& scene) {
+  forward::CutResult result = synthetic_cut(scene);
+  if (scene.material.yield_stress > 61) {
+    result.branch = forward::Branch::bending;
+    result.F_c.value *= 0.5;
+  }
+  return result;
+}
+
+TEST(LocalModel, NeverDifferencesAcrossABranch) {
+  const TemporaryFolder folder;
+  const inverse::Job job = write_job(folder);
+  const inverse::ParameterSpace space(job);
+  inverse::Misfit misfit(job, space);
+  inverse::Journal journal(folder / "journal.jsonl");
+  inverse::RunDatabase database(journal, "test", two_branches, 2);
+  inverse::Objective objective(job, space, misfit, database, 1000);
+  Eigen::VectorXd point(3);
+  point << space.coordinate(0, 60), space.coordinate(1, 2), space.coordinate(2, 0.3);
+  const auto model = inverse::LocalModel::by_differences(objective, objective.evaluate(point));
+  EXPECT_EQ(inverse::count(model.known()), 4u);
+  // The step of 4 % upwards crosses to the other branch; the slope must be that of this side, d ln F_c < d ln sigma_y.
+  Eigen::VectorXd moved = point;
+  moved[0] -= 0.02;
+  const double change = std::log(model.predict(moved)(3, 0) / model.base().simulated(3, 0));
+  EXPECT_LT(change, 0);
+  EXPECT_GT(change, -0.02);
+}
+
+}  // namespace
+}  // namespace kerf
