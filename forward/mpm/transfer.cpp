@@ -137,7 +137,10 @@ void accelerate(State& state) {
   }
 }
 
-void advance(State& state, double pic) {
+namespace {
+
+template <bool damped>
+void advance_all(State& state, double pic) {
   Particles& p = state.particles;
   const Grid& grid = state.grid;
   const double dt = state.step;
@@ -156,10 +159,14 @@ void advance(State& state, double pic) {
       next *= weights;
       change *= weights;
       const double move_x = sum_x(next), move_y = sum_y(next);
-      const double flip_x = p.velocity_x[i] + sum_x(change), flip_y = p.velocity_y[i] + sum_y(change);
-      const double vx = flip_x + pic * (move_x - flip_x), vy = flip_y + pic * (move_y - flip_y);
       const double mass = p.volume[i] * state.density;
-      lost += 0.5 * mass * (flip_x * flip_x + flip_y * flip_y - vx * vx - vy * vy);
+      double vx = p.velocity_x[i] + sum_x(change), vy = p.velocity_y[i] + sum_y(change);
+      if constexpr (damped) {
+        const double flip_x = vx, flip_y = vy;
+        vx += pic * (move_x - vx);
+        vy += pic * (move_y - vy);
+        lost += 0.5 * mass * (flip_x * flip_x + flip_y * flip_y - vx * vx - vy * vy);
+      }
       p.velocity_x[i] = vx;
       p.velocity_y[i] = vy;
       p.x[i] += dt * move_x;
@@ -173,6 +180,12 @@ void advance(State& state, double pic) {
     }
   }
   state.work.damping += lost;
+}
+
+}  // namespace
+
+void advance(State& state, double pic) {
+  pic > 0.0 ? advance_all<true>(state, pic) : advance_all<false>(state, 0.0);
 }
 
 }  // namespace kerf::forward

@@ -1,0 +1,126 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "forward/run.hpp"
+
+namespace kerf::forward {
+namespace {
+
+/// A shipped scene with some of its keys replaced: {{"cut.depth", 0.5}, ...} in consistent units.
+Scene shipped(const std::string& name, const std::vector<std::pair<std::string, double>>& changes = {}) {
+  Document document = Document::load(std::string(KERF_SOURCE_DIR "/data/scenes/") + name + ".toml");
+  for (const auto& [path, value] : changes) document.set_number(path, value, scene_blocks());
+  return read_scene(document);
+}
+
+void expect_accepted(const CutResult& result) {
+  EXPECT_TRUE(result.accepted);
+  for (const std::string& reason : result.refusals) ADD_FAILURE() << reason;
+}
+
+TEST(VerificationCut, AtFortyFiveDegrees) {
+  const CutResult result = run(shipped("verification_45"));
+  expect_accepted(result);
+  EXPECT_GT(result.F_c.value, 7.3);
+  EXPECT_LT(result.F_c.value, 7.9);
+  EXPECT_LT(result.F_c.standard_error, 0.005 * result.F_c.value);
+  EXPECT_NEAR(result.F_t.value / result.F_c.value, -1.0, 0.01);
+  EXPECT_NEAR(result.fracture_energy_ratio, 1.0, 0.02);
+  EXPECT_LT(std::abs(result.ledger.residue()), 0.02 * result.ledger.tool_work);
+  EXPECT_EQ(result.branch, Branch::touching);
+  EXPECT_LE(result.steady_from, 2.5 * 0.5 + 0.4 + 0.5);  // 2 h and a notch after the end of the ramp
+}
+
+TEST(VerificationCut, UndampedClosesItsLedgerTwiceAsTightly) {
+  Scene scene = shipped("verification_45", {{"resolution.cells_through_chip", 6}});
+  scene.pic_damping.reset();
+  const CutResult result = run(scene);
+  expect_accepted(result);
+  EXPECT_EQ(result.ledger.damping, 0.0);
+  EXPECT_LT(std::abs(result.ledger.residue()), 0.01 * result.ledger.tool_work);
+}
+
+TEST(VerificationCut, SmallerRakesAreSteadyToo) {
+  for (const char* name : {"verification_30", "verification_15"}) {
+    const Scene scene = shipped(name, {{"resolution.cells_through_chip", 6}});
+    const CutResult result = run(scene);
+    expect_accepted(result);
+    EXPECT_NEAR(result.F_t.value / result.F_c.value, -std::tan(scene.tool.rake), 0.01) << name;
+    EXPECT_NEAR(result.fracture_energy_ratio, 1.0, 0.02) << name;
+    EXPECT_LT(std::abs(result.ledger.residue()), 0.02 * result.ledger.tool_work) << name;
+  }
+}
+
+TEST(Friction, TurnsTheForceByTheFrictionAngle) {
+  Scene scene = shipped("verification_45", {{"resolution.cells_through_chip", 4}});
+  scene.friction = Friction{.coefficient = 0.3, .yield_cap = 0.9};
+  const CutResult result = run(scene);
+  expect_accepted(result);
+  const double Z = std::tan(std::atan(0.3) - scene.tool.rake);  // theory, section 1
+  EXPECT_NEAR(result.F_t.value / result.F_c.value, Z, 0.01);
+  EXPECT_GT(result.ledger.friction, 0.1 * result.ledger.tool_work);
+}
+
+TEST(Friction, NeverExceedsTheShearYieldOfTheChip) {
+  Scene scene = shipped("verification_45", {{"resolution.cells_through_chip", 4}});
+  scene.friction = Friction{.coefficient = 1.5, .yield_cap = 0.2};
+  const CutResult result = run(scene);
+  const double contact_length = 1.5 * scene.cut.depth;  // more than the chip ever touches here
+  EXPECT_LT(result.rake_tangential.value, 0.2 * scene.material.yield_stress / std::numbers::sqrt3 * contact_length);
+  EXPECT_GT(result.rake_tangential.value, 0.0);
+}
+
+TEST(Cut, DependsOnDensityAndSpeedOnlyThroughInertia) {
+  const std::vector<std::pair<std::string, double>> coarse{{"resolution.cells_through_chip", 4}, {"cut.travel", 4}};
+  const Scene scene = shipped("verification_45", coarse);
+  Scene slow = scene;  // four times the density at half the speed: the same non-dimensional problem
+  slow.material.density *= 4.0;
+  slow.cut.speed *= 0.5;
+  slow.cut.ramp *= 2.0;
+  const CutResult a = run(scene), b = run(slow);
+  ASSERT_EQ(a.history.size(), b.history.size());
+  for (std::size_t i = 0; i < a.history.size(); ++i)
+    EXPECT_NEAR(a.history[i].F_c, b.history[i].F_c, 1e-3 * a.history.back().F_c);
+}
+
+TEST(Cut, IsDeterministic) {
+  const Scene scene = shipped("verification_45", {{"resolution.cells_through_chip", 4}, {"cut.travel", 2}});
+  const CutResult a = run(scene), b = run(scene);
+  ASSERT_EQ(a.history.size(), b.history.size());
+  for (std::size_t i = 0; i < a.history.size(); ++i) {
+    EXPECT_EQ(a.history[i].F_c, b.history[i].F_c);
+    EXPECT_EQ(a.history[i].ledger.plastic, b.history[i].ledger.plastic);
+  }
+}
+
+TEST(Cut, AWornEdgePressesOnTheBaseAndASharpOneDoesNot) {
+  Scene scene = shipped("verification_45", {{"resolution.cells_through_chip", 4}});
+  const CutResult sharp = run(scene);
+  EXPECT_EQ(sharp.bottom_normal.value, 0.0);
+  scene.edge_contact = EdgeContact{.press_in = 0.01 * 0.5, .edge_radius = 0.5, .friction = 0.0};
+  const CutResult worn = run(scene);
+  expect_accepted(worn);
+  EXPECT_GT(worn.bottom_normal.value, 0.5);
+  EXPECT_NEAR(worn.F_c.value, sharp.F_c.value, 0.02 * sharp.F_c.value);
+  // The push on the base lifts the tool: F_t = Z F_c + F_b.
+  EXPECT_NEAR(worn.F_t.value, -worn.F_c.value + worn.bottom_normal.value, 0.03 * worn.F_c.value);
+}
+
+TEST(Acceptance, RefusesAGridTooCoarseForTheCohesiveLaw) {
+  const CutResult result =
+      run(shipped("verification_45", {{"cut.depth", 1.5}, {"resolution.cells_through_chip", 4}, {"cut.travel", 4}}));
+  EXPECT_FALSE(result.accepted);
+  ASSERT_FALSE(result.refusals.empty());
+  EXPECT_NE(result.refusals.front().find("too coarse"), std::string::npos);
+}
+
+TEST(Acceptance, AStoppedRunIsAValueThatSaysSo) {
+  const CutResult result = run(shipped("verification_45"), [](const Progress&) { return false; });
+  EXPECT_FALSE(result.accepted);
+  EXPECT_EQ(result.refusals.front(), "interrupted");
+}
+
+}  // namespace
+}  // namespace kerf::forward
