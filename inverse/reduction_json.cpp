@@ -148,7 +148,7 @@ ordered_json measured_json(const chip::Measurements& measurements) {
 }  // namespace
 
 std::string verdict_of(const chip::MethodResult& result, const chip::FittedParameter& parameter) {
-  const std::string words = in_words(parameter.verdict);
+  std::string words = in_words(parameter.verdict);
   if (result.fit.rejected()) return words + ", by a rejected model";
   if (!result.out_of_range.empty()) return words + ", by a model out of its range";
   return words;
