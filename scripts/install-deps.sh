@@ -4,7 +4,7 @@ set -euo pipefail
 
 packages=(
   g++ cmake ninja-build pkg-config
-  libeigen3-dev libceres-dev libnlopt-dev libnlopt-cxx-dev libhdf5-dev libssl-dev
+  libboost-dev libeigen3-dev libceres-dev libnlopt-dev libnlopt-cxx-dev libhdf5-dev libssl-dev
   libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libfmt-dev libudunits2-dev
   libgtest-dev libgmock-dev libbenchmark-dev
   python3-matplotlib python3-h5py python3-jinja2
