@@ -36,7 +36,7 @@ void judge(CutResult& result, const Scene& scene) {
         "plane tore, or the cut is not steady",
         result.fracture_energy_ratio));
   if (!result.steady)
-    refuse("no steady force: the two halves of the record differ by more than 1 % and its own scatter");
+    refuse("no steady force: the two halves of the record differ by more than 1 % and their own scatter, or by 3 %");
   if (!(result.deepest_penetration < 0.25))
     refuse(fmt::format("a crack face went {:.2f} cells into the tool (allowed 0.25)", result.deepest_penetration));
   if (!(result.sliding_share > 0.98))

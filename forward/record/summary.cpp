@@ -28,16 +28,17 @@ struct SteadyPart {
   bool steady;
 };
 
-/// Steady when, after the truncation point, at least two depths remain and their halves agree to 1 % or to twice the
-/// scatter of their difference.
+/// Steady when, after the truncation point, at least two depths remain and their halves agree to 1 %, or, where
+/// friction makes the force wander, to twice the scatter of their difference but never worse than 3 %.
 SteadyPart steady_part(const std::vector<double>& force, const Scene& scene) {
   const std::size_t from = truncation_point(force, earliest(scene));
   const std::size_t shortest = 2 * static_cast<std::size_t>(scene.resolution.cells_through_chip);
   if (from + shortest > force.size()) return {std::min(from, force.size()), false};
   const std::span<const double> rest(force.data() + from, force.size() - from);
   const Estimate first = batch_mean(rest.first(rest.size() / 2)), second = batch_mean(rest.last(rest.size() / 2));
-  const double difference = std::abs(first.value - second.value);
-  return {from, difference < 0.01 * std::abs(batch_mean(rest).value)};
+  const double mean = std::abs(batch_mean(rest).value);
+  const double scatter = 2.0 * std::hypot(first.standard_error, second.standard_error);
+  return {from, std::abs(first.value - second.value) < std::clamp(scatter, 0.01 * mean, 0.03 * mean)};
 }
 
 /// G_c of the mixed-mode criterion at a mode I share: (s G/G_Ic)^n + ((1 - s) G/G_IIc)^m = 1, by bisection.
