@@ -30,7 +30,9 @@ def read_calibration(directory):
     directory = Path(directory)
     result = _json(directory / "result.json")
     if result is None:
-        raise Unreadable(f"{directory / 'result.json'}: not there; give the directory that `kerf calibrate -o` wrote")
+        remedy = (f"the calibration is not finished, continue it with `kerf resume {directory}`"
+                  if (directory / "journal.jsonl").exists() else "give the directory that `kerf calibrate -o` wrote")
+        raise Unreadable(f"{directory / 'result.json'}: not there; {remedy}")
     if not isinstance(result.get("parameters"), dict) or not result["parameters"]:
         raise Unreadable(f"{directory / 'result.json'}: has no parameters")
     calibration = Calibration(directory, result)
@@ -126,6 +128,9 @@ def method_curves(reduction):
     return curves
 
 
+DISBELIEVED = ("rejected", "out of range", "not converged")  # what `kerf reduce` says of a fit
+
+
 def toughness_rows(calibration):
     """Toughness by every method, the simulation first, for the comparison of intercepts."""
     rows = []
@@ -144,5 +149,5 @@ def toughness_rows(calibration):
         if parameter and finite(parameter.get("value")):
             rows.append({"label": label_of(name), "family": family_of(name), "value": parameter["value"],
                          "interval": parameter.get("interval"), "unit": parameter["unit"],
-                         "rejected": (method.get("verdict") or {}).get("fit") == "rejected"})
+                         "rejected": (method.get("verdict") or {}).get("fit") in DISBELIEVED})
     return rows

@@ -1,6 +1,7 @@
 """The page of a calibration, section by section."""
 
 import math
+import re
 
 from markupsafe import Markup
 
@@ -34,28 +35,46 @@ def page_of_calibration(calibration):
     return page
 
 
+LEAD_LENGTH = 330  # characters of the statement that stand at the top; the rest follows the table
+
+
+def _statement(result):
+    """The statement as (lead, rest), parted between sentences."""
+    sentences = re.split(r"(?<=[.)])\s+(?=[A-Z(])", result.get("statement") or "")
+    lead = sentences[:1]
+    while len(lead) < len(sentences) and len(" ".join(lead + [sentences[len(lead)]])) <= LEAD_LENGTH:
+        lead.append(sentences[len(lead)])
+    return " ".join(lead), " ".join(sentences[len(lead):])
+
+
 def _headline(result):
-    lines = []
-    if result.get("statement"):
-        lines.append(prose(result["statement"]))
-    if result.get("converged") is False:
-        lines.append(html("The search did not converge: {}.", result.get("reason", "no reason was given")))
-    return lines
+    lead, _ = _statement(result)
+    if lead:
+        return [prose(lead)]
+    return [html("The search did not converge: {}.", result.get("reason", "no reason was given"))
+            if result.get("converged") is False else "The calibration left no statement."]
 
 
 def _parameters(page, calibration):
     result = calibration.result
     section = page.section("What was measured")
+    # With several assumptions on the edge only what holds under all of them may be claimed.
+    either = any(p.get("interval_over_assumptions") for p in result["parameters"].values())
+    key = "interval_over_assumptions" if either else "interval"
     rows = []
     for name, p in result["parameters"].items():
-        rows.append([_name(name), _value(p), _interval(p),
-                     _track(p), _verdict(p.get("verdict"))])
-    heads = ["parameter", "estimate ± standard error", "95 % interval", "within the search’s bounds", "verdict"]
+        rows.append([_name(name), _value(p), _interval(p, key), _track(p, key), _verdict(p.get("verdict"))])
+    heads = ["parameter", "estimate ± standard error",
+             html("95 % interval,<br>both edge assumptions") if either else "95 % interval",
+             "within the search’s bounds", "verdict"]
     section.table(heads, rows, numeric=(1, 2))
     if finite(result.get("chi2")):
         section.text(html("Misfit {} = {} on {} degrees of freedom{}.", Markup("χ²"), number(result["chi2"]),
                           result.get("degrees_of_freedom", "?"), _scale_remark(result)))
-    section.warnings([prose(str(line)) for line in result.get("warnings", [])] + calibration.notes)
+    rest = _statement(result)[1]
+    if rest:
+        section.text(prose(rest))
+    section.warnings(calibration.notes)
 
 
 def _name(name):
@@ -85,9 +104,9 @@ def _interval(p, key="interval"):
     return interval_text(interval, factor)
 
 
-def _track(p):
+def _track(p, key="interval"):
     """Where the interval lies within the bounds of the search, on a logarithmic scale when they are positive."""
-    bounds, interval = p.get("bounds"), p.get("interval") or [None, None]
+    bounds, interval = p.get("bounds"), p.get(key) or [None, None]
     if not bounds or not all(map(finite, bounds)) or not finite(p.get("value")) or bounds[1] <= bounds[0]:
         return ""
     scale = math.log if bounds[0] > 0 else float
@@ -120,6 +139,9 @@ def _fit(page, calibration):
     section.figure(picture, "Squares are measurements with their standard error. The simulation is drawn through the "
                             "depths that were simulated; closed forms and extrapolations run on to zero depth, where "
                             "they are read as a toughness.")
+    section.warnings([html("The cut at depth {} mm counts for nothing: {}.", number(cut["depth_mm"]),
+                           prose("; ".join(cut.get("refusals") or ["it could not be compared"])))
+                      for cut in calibration.result["cuts"] if not cut.get("usable", True)])
     if calibration.reduction is None:
         section.missing("reduction.json is not there: closed forms and intercepts are left out.")
 
@@ -132,14 +154,15 @@ def _intercepts(page, calibration):
         section.missing("Neither the calibration nor a simple method estimates a toughness here.")
         return
     section.figure(picture, "Estimates with 95 % intervals; an arrow marks an interval that leaves the axis, a hollow "
-                            "dot a method that its own fit rejects. A straight line "
+                            "dot a method that its own fit rejects or whose range it leaves. A straight line "
                             "through forces overshoots: with friction the force approaches its intercept like the square "
                             "root of the depth.")
     reduction = calibration.reduction or {}
     section.warnings([prose(with_labels(line)) for line in reduction.get("warnings", [])])
     methods = reduction.get("methods") or {}
     statements = {name: (method.get("verdict") or {}).get("statement", "") for name, method in methods.items()}
-    verdicts = [[label_of(name), html('<span class="why">{}</span>', prose(with_labels(statement)))]
+    verdicts = [[html('<span style="white-space:nowrap">{}</span>', label_of(name)),
+                 html('<span class="why">{}</span>', prose(with_labels(statement)))]
                 for name, statement in statements.items()]
     if verdicts:
         section.table(["method", "what its fit says"], verdicts)
@@ -165,8 +188,8 @@ def _identifiability(page, calibration):
         return
     names = [PLAIN.get(name, name) for name in seen["names"]]
     section.figure(fit_figures.identifiability(names, values, seen["singular_vectors"], seen.get("correlation")),
-                   "Directions of (logarithmic) parameter space, best known first. The inverse of a singular value is the "
-                   "relative error along its direction: below 2 (orange) the data do not determine it.")
+                   "Directions of (logarithmic) parameter space, best known first. The inverse of a singular value is "
+                   "the relative error along its direction: below 2 (orange) the data do not determine it.")
     weakest = len(values) - 1
     if finite(values[weakest]) and values[weakest] > 0:
         shares = sorted(zip(seen["names"], seen["singular_vectors"][weakest]), key=lambda pair: -abs(pair[1]))
@@ -205,7 +228,9 @@ def _cut(page, calibration):
         return
     cut = max(calibration.cuts, key=lambda candidate: (candidate.result["accepted"], candidate.tool["depth"]))
     section = page.section("One of the cuts, as simulated at the estimate")
-    section.text(html("{} ({}).", cut.title, cut.path.name))
+    section.text(html("Depth of cut {} mm, rake {}°; kept in cuts/{}, to be opened with ParaView through the .xdmf "
+                      "beside it. The forces are those of the simulated, sharp tool, without an edge force.",
+                      number(cut.tool["depth"]), number(math.degrees(cut.tool["rake"])), cut.path.name))
     section.warnings([prose(reason) for reason in cut.result["refusals"]])
     section.facts(facts_of(cut.result))
     add_cut_figures(page, cut)

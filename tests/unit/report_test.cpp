@@ -145,6 +145,28 @@ TEST_F(Report, LeavesOutWhatIsMissingWithANote) {
   EXPECT_THAT(html, HasSubstr("−∞ … ∞"));
 }
 
+TEST_F(Report, ClaimsOnlyWhatHoldsUnderEveryEdgeAssumption) {
+  Json result = sample_result();
+  result["parameters"]["toughness"]["interval_over_assumptions"] = {2500, 59400};
+  put("result.json", result);
+  ASSERT_EQ(report().exit_code, 0);
+  const std::string html = content_of(folder_ / "run" / "report.html");
+  EXPECT_THAT(html, HasSubstr("both edge assumptions"));
+  EXPECT_THAT(html, HasSubstr(std::string("2\u202f500 … 59\u202f400")));
+}
+
+TEST_F(Report, NamesTheCutsThatCountForNothing) {
+  Json result = sample_result();
+  result["cuts"][1]["usable"] = false;
+  result["cuts"][1]["refusals"] = {"no steady force within 1.2 mm"};
+  result["cuts"][1]["F_c"]["fitted"] = nullptr;
+  result["cuts"][1]["F_c"]["weighted_residual"] = nullptr;
+  put("result.json", result);
+  ASSERT_EQ(report().exit_code, 0);
+  EXPECT_THAT(content_of(folder_ / "run" / "report.html"),
+              HasSubstr("The cut at depth 0.0400 mm counts for nothing: no steady force within 1.2 mm"));
+}
+
 TEST_F(Report, ShowsASingleCut) {
   const fs::path h5 = folder_ / "one.h5";
   write_sample_cut(h5);
@@ -175,6 +197,9 @@ TEST_F(Report, RefusesWhatIsNotThereOrNotAResult) {
   const ProcessOutput empty = report();
   EXPECT_EQ(empty.exit_code, 3);
   EXPECT_THAT(empty.err, HasSubstr("result.json: not there"));
+
+  std::ofstream(folder_ / "run" / "journal.jsonl") << "{}\n";
+  EXPECT_THAT(report().err, HasSubstr("continue it with `kerf resume"));
 
   std::ofstream(folder_ / "run" / "result.json") << "{\"parameters\": ";
   const ProcessOutput broken = report();
