@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <csignal>
 #include <cstdio>
 
 #include "forward/record/cut_file.hpp"
@@ -12,6 +11,7 @@
 #include "inverse/calibration.hpp"
 #include "inverse/calibration_json.hpp"
 #include "inverse/closed_form_reduction.hpp"
+#include "inverse/commands/interrupt.hpp"
 #include "inverse/manifest.hpp"
 #include "inverse/reduction_json.hpp"
 #include "inverse/statement.hpp"
@@ -25,31 +25,11 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
-volatile std::sig_atomic_t interrupted = 0;
-
-/// While it lives, the first Ctrl-C asks the simulations to stop at the next cell crossing; a second one ends the
-/// process, which the journal survives as well.
-class StopOnInterrupt {
- public:
-  StopOnInterrupt() {
-    struct sigaction action {};
-    action.sa_handler = [](int) { interrupted = 1; };
-    action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
-    ::sigaction(SIGINT, &action, &before_);
-  }
-  StopOnInterrupt(const StopOnInterrupt&) = delete;
-  StopOnInterrupt& operator=(const StopOnInterrupt&) = delete;
-  ~StopOnInterrupt() { ::sigaction(SIGINT, &before_, nullptr); }
-
- private:
-  struct sigaction before_ {};
-};
-
 forward::CutResult simulate(const forward::Scene& scene) {
-  if (interrupted != 0) throw inverse::Interrupted{};
+  if (StopOnInterrupt::asked()) throw inverse::Interrupted{};
   bool stopped = false;
   forward::CutResult result = forward::run(scene, [&](const forward::Progress&) {
-    stopped = interrupted != 0;
+    stopped = StopOnInterrupt::asked();
     return !stopped;
   });
   if (stopped) throw inverse::Interrupted{};

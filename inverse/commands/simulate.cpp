@@ -4,7 +4,6 @@
 #include <cerrno>
 #include <chrono>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -15,6 +14,7 @@
 #include "forward/record/result_json.hpp"
 #include "forward/run.hpp"
 #include "inverse/commands/commands.hpp"
+#include "inverse/commands/interrupt.hpp"
 #include "models/base/error.hpp"
 #include "models/base/units.hpp"
 
@@ -22,25 +22,6 @@ namespace kerf::commands {
 namespace {
 
 namespace fs = std::filesystem;
-
-volatile std::sig_atomic_t interrupted = 0;
-
-/// While it lives, the first Ctrl-C asks the run to stop at the next cell crossing; a second one ends the process.
-class StopOnInterrupt {
- public:
-  StopOnInterrupt() {
-    struct sigaction action {};
-    action.sa_handler = [](int) { interrupted = 1; };
-    action.sa_flags = static_cast<int>(SA_RESETHAND);
-    ::sigaction(SIGINT, &action, &before_);
-  }
-  StopOnInterrupt(const StopOnInterrupt&) = delete;
-  StopOnInterrupt& operator=(const StopOnInterrupt&) = delete;
-  ~StopOnInterrupt() { ::sigaction(SIGINT, &before_, nullptr); }
-
- private:
-  struct sigaction before_ {};
-};
 
 /// One refreshed line on a terminal; elsewhere a plain line now and then.
 class ProgressLine {
@@ -152,7 +133,7 @@ ExitCode simulate(const Options& options) {
   ProgressLine line;
   const forward::CutResult result = forward::run(scene, [&](const forward::Progress& progress) {
     line.show(progress);
-    return interrupted == 0;
+    return !StopOnInterrupt::asked();
   });
   line.clear();
 
@@ -163,7 +144,7 @@ ExitCode simulate(const Options& options) {
     print_table(result);
   std::fflush(stdout);
   fmt::print(stderr, "{}\n", verdict(result));
-  if (interrupted != 0) return ExitCode::interrupted;
+  if (StopOnInterrupt::asked()) return ExitCode::interrupted;
   return result.accepted ? ExitCode::success : ExitCode::not_converged;
 }
 
