@@ -14,6 +14,10 @@ constexpr Eigen::Index F_c = static_cast<Eigen::Index>(Observable::F_c);
 constexpr Eigen::Index F_t = static_cast<Eigen::Index>(Observable::F_t);
 constexpr Eigen::Index chip_ratio = static_cast<Eigen::Index>(Observable::chip_ratio);
 
+std::array<double, observable_count> simulation_errors(const RunRecord& run) {
+  return {run.F_c.standard_error, run.F_t.standard_error, run.chip_ratio.standard_error};
+}
+
 Eigen::Index rows(const std::vector<MeasuredCut>& cuts) {
   return static_cast<Eigen::Index>(cuts.size());
 }
@@ -74,9 +78,7 @@ bool Misfit::is_usable(std::size_t cut, const RunRecord& run) const {
 void Misfit::include_simulation_errors(const Evaluation& reference) {
   for (Eigen::Index i = 0; i < weights_.rows(); ++i) {
     if (!reference.usable[static_cast<std::size_t>(i)]) continue;
-    const RunRecord& run = reference.runs[static_cast<std::size_t>(i)];
-    const std::array<double, observable_count> simulated{run.F_c.standard_error, run.F_t.standard_error,
-                                                         run.chip_ratio.standard_error};
+    const auto simulated = simulation_errors(reference.runs[static_cast<std::size_t>(i)]);
     for (Eigen::Index k = 0; k < weights_.cols(); ++k) {
       const double error = simulated[static_cast<std::size_t>(k)];
       if (errors_(i, k) > 0 && std::isfinite(error)) weights_(i, k) = 1.0 / std::hypot(errors_(i, k), error);
@@ -133,7 +135,9 @@ double Misfit::chi2_noise(const Evaluation& evaluation, double noise) const {
   for (Eigen::Index i = 0; i < weights_.rows(); ++i)
     for (Eigen::Index k = 0; k < weights_.cols(); ++k) {
       if (!evaluation.usable[static_cast<std::size_t>(i)]) continue;
-      const double error = noise * evaluation.simulated(i, k) * weights_(i, k);
+      const double own = simulation_errors(evaluation.runs[static_cast<std::size_t>(i)])[static_cast<std::size_t>(k)];
+      const double rough = std::hypot(noise * evaluation.simulated(i, k), std::isfinite(own) ? own : 0);
+      const double error = rough * weights_(i, k);
       const double r = here.weighted[i * weights_.cols() + k];
       variance += 2 * (4 * r * r * error * error + 2 * error * error * error * error);
     }
