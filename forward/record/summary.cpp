@@ -16,29 +16,36 @@ std::vector<double> series(const Samples& samples, Member member) {
   return values;
 }
 
-/// First crossing that may count: the ramp is over, the tool has passed the notch and a depth of steady material.
+/// First crossing that may count: the ramp is over and the tool has cut half a depth of unbroken material.
 std::size_t earliest(const Scene& scene) {
   const double ramp_travel = 0.5 * scene.cut.speed * scene.cut.ramp;
-  const double travel = ramp_travel + (1.0 + scene.cut.notch) * scene.cut.depth;
+  const double travel = ramp_travel + (0.5 + scene.cut.notch) * scene.cut.depth;
   return static_cast<std::size_t>(std::ceil(travel / scene.cell()));
 }
 
 struct SteadyPart {
   std::size_t from;
+  std::size_t settled;  ///< truncation point: by then the chip has grown past the place where it is measured
   bool steady;
 };
 
 /// Steady when, after the truncation point, at least two depths remain and their halves agree to 1 %, or, where
 /// friction makes the force wander, to twice the scatter of their difference but never worse than 3 %.
 SteadyPart steady_part(const std::vector<double>& force, const Scene& scene) {
-  const std::size_t from = truncation_point(force, earliest(scene));
+  const std::size_t truncated = truncation_point(force, earliest(scene));
+  std::size_t from = truncated;
+  if (truncated == force.size()) return {truncated, truncated, false};
+  // The truncation point sits deep in a quiet record: whatever before it has the same mean counts as well.
+  const auto mean_from = [&](std::size_t k) { return batch_mean(std::span(force).subspan(k)).value; };
+  const double settled = mean_from(truncated);
+  while (from > earliest(scene) && std::abs(mean_from(from - 1) - settled) < 0.002 * std::abs(settled)) --from;
   const std::size_t shortest = 2 * static_cast<std::size_t>(scene.resolution.cells_through_chip);
-  if (from + shortest > force.size()) return {std::min(from, force.size()), false};
+  if (from + shortest > force.size()) return {from, truncated, false};
   const std::span<const double> rest(force.data() + from, force.size() - from);
   const Estimate first = batch_mean(rest.first(rest.size() / 2)), second = batch_mean(rest.last(rest.size() / 2));
   const double mean = std::abs(batch_mean(rest).value);
   const double scatter = 2.0 * std::hypot(first.standard_error, second.standard_error);
-  return {from, std::abs(first.value - second.value) < std::clamp(scatter, 0.01 * mean, 0.03 * mean)};
+  return {from, truncated, std::abs(first.value - second.value) < std::clamp(scatter, 0.01 * mean, 0.03 * mean)};
 }
 
 /// G_c of the mixed-mode criterion at a mode I share: (s G/G_Ic)^n + ((1 - s) G/G_IIc)^m = 1, by bisection.
@@ -139,7 +146,7 @@ void summarise(CutResult& result, const Recorder& recorder, const State& state, 
   result.deepest_penetration = mean(&ForceSample::penetration).value / scene.cell();
   const auto chip_mean = [&](auto member) {
     const std::vector<double> values = series(recorder.chip(), member);
-    return batch_mean(std::span(values).subspan(from));
+    return batch_mean(std::span(values).subspan(std::min(part.settled, history.size() - 1)));
   };
   result.chip_ratio = chip_mean(&ChipShape::ratio);
   result.chip_curvature = chip_mean(&ChipShape::curvature);
