@@ -45,7 +45,10 @@ class AtomicFile : public ::testing::Test {
  protected:
   void SetUp() override { fs::remove_all(folder_); }
   void TearDown() override { fs::remove_all(folder_); }
-  const fs::path folder_ = fs::path(::testing::TempDir()) / "kerf_atomic_file";
+  // Tests run at the same time, each with a folder of its own.
+  const fs::path folder_ =
+      fs::path(::testing::TempDir()) /
+      (std::string("kerf_atomic_file_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
 };
 
 TEST_F(AtomicFile, ReplacesTheWholeContentAndLeavesNothingBeside) {
