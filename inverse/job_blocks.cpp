@@ -4,11 +4,6 @@
 namespace kerf::inverse {
 namespace {
 
-// Its unit is that of the number at `path`, so it stays text until the scene is known.
-Parameter quantity(std::string key, std::string meaning) {
-  return text(std::move(key), std::move(meaning));
-}
-
 std::vector<std::string> observables() {
   return {observable_names.begin(), observable_names.end()};
 }

@@ -39,6 +39,8 @@ std::string allowed(const Parameter& parameter) {
   switch (parameter.kind) {
     case Parameter::Kind::number:
       return allowed_range(parameter);
+    case Parameter::Kind::quantity:
+      return "a number with unit";
     case Parameter::Kind::flag:
       return "true or false";
     case Parameter::Kind::text:

@@ -199,6 +199,10 @@ void BlockReader::store(const Parameter& parameter, const Node& node, Values& va
     case Parameter::Kind::number:
       values.numbers_[parameter.key] = read_number(node, parameter);
       break;
+    case Parameter::Kind::quantity:
+      values.texts_[parameter.key] =
+          std::holds_alternative<double>(node.value) ? toml_text(node) : read_text(node, parameter);
+      break;
     case Parameter::Kind::text:
       values.texts_[parameter.key] = read_text(node, parameter);
       break;

@@ -69,6 +69,12 @@ Parameter text(std::string key, std::string meaning, std::vector<std::string> ch
   return parameter;
 }
 
+Parameter quantity(std::string key, std::string meaning) {
+  Parameter parameter = text(std::move(key), std::move(meaning));
+  parameter.kind = Parameter::Kind::quantity;
+  return parameter;
+}
+
 Parameter flag(std::string key, std::string meaning) {
   Parameter parameter;
   parameter.key = std::move(key);

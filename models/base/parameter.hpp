@@ -13,7 +13,7 @@ namespace kerf {
 /// One key that an input file may hold. Declared once, beside the equations that use it; the reader, its errors,
 /// `kerf list`, calibration bounds and the family tests all read this declaration.
 struct Parameter {
-  enum class Kind { number, text, flag, list };
+  enum class Kind { number, quantity, text, flag, list };
 
   std::string key;
   Kind kind = Kind::number;
@@ -40,6 +40,8 @@ std::string allowed_range(const Parameter& parameter);
 
 /// Declarations read like a table: number("yield_stress", "MPa", 1e-3, 1e5, "uniaxial yield stress").
 Parameter number(std::string key, std::string unit, double lower, double upper, std::string meaning);
+/// A number with unit whose dimension another key decides: read as the text that stands in the file.
+Parameter quantity(std::string key, std::string meaning);
 Parameter text(std::string key, std::string meaning, std::vector<std::string> choices = {});
 Parameter flag(std::string key, std::string meaning);
 Parameter list(std::string key, std::string meaning, std::vector<std::string> choices = {});

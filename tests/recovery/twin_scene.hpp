@@ -57,9 +57,9 @@ start = "34 MPa"
 key = true
 [[free]]
 path = "friction.coefficient"
-lower = "0.05"
-upper = "0.6"
-start = "0.12"
+lower = 0.05
+upper = 0.6
+start = 0.12
 key = true
 [budget]
 max_runs = 60

@@ -25,7 +25,7 @@ const std::vector<double> depths{0.1, 0.2, 0.4, 0.8};
 std::string with_starts(std::string job) {
   job = replaced(job, "lower = \"10 MPa\"", "start = \"120 MPa\"\nlower = \"10 MPa\"");
   job = replaced(job, "lower = \"100 J/m^2\"", "start = \"800 J/m^2\"\nlower = \"100 J/m^2\"");
-  return replaced(job, "lower = \"0.02\"", "start = \"0.6\"\nlower = \"0.02\"");
+  return replaced(job, "lower = 0.02", "start = 0.6\nlower = 0.02");
 }
 
 struct Method {

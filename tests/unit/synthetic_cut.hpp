@@ -135,8 +135,8 @@ lower = "100 J/m^2"
 upper = "20 kJ/m^2"
 [[free]]
 path = "friction.coefficient"
-lower = "0.02"
-upper = "1.5"
+lower = 0.02
+upper = 1.5
 [[tie]]
 path = "cohesive.mode_II.toughness"
 equals = 1
