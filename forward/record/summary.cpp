@@ -25,7 +25,6 @@ std::size_t earliest(const Scene& scene) {
 
 struct SteadyPart {
   std::size_t from;
-  std::size_t settled;  ///< truncation point: by then the chip has grown past the place where it is measured
   bool steady;
 };
 
@@ -34,18 +33,18 @@ struct SteadyPart {
 SteadyPart steady_part(const std::vector<double>& force, const Scene& scene) {
   const std::size_t truncated = truncation_point(force, earliest(scene));
   std::size_t from = truncated;
-  if (truncated == force.size()) return {truncated, truncated, false};
+  if (truncated == force.size()) return {truncated, false};
   // The truncation point sits deep in a quiet record: whatever before it has the same mean counts as well.
   const auto mean_from = [&](std::size_t k) { return batch_mean(std::span(force).subspan(k)).value; };
   const double settled = mean_from(truncated);
   while (from > earliest(scene) && std::abs(mean_from(from - 1) - settled) < 0.002 * std::abs(settled)) --from;
   const std::size_t shortest = 2 * static_cast<std::size_t>(scene.resolution.cells_through_chip);
-  if (from + shortest > force.size()) return {from, truncated, false};
+  if (from + shortest > force.size()) return {from, false};
   const std::span<const double> rest(force.data() + from, force.size() - from);
   const Estimate first = batch_mean(rest.first(rest.size() / 2)), second = batch_mean(rest.last(rest.size() / 2));
   const double mean = std::abs(batch_mean(rest).value);
   const double scatter = 2.0 * std::hypot(first.standard_error, second.standard_error);
-  return {from, truncated, std::abs(first.value - second.value) < std::clamp(scatter, 0.01 * mean, 0.03 * mean)};
+  return {from, std::abs(first.value - second.value) < std::clamp(scatter, 0.01 * mean, 0.03 * mean)};
 }
 
 /// G_c of the mixed-mode criterion at a mode I share: (s G/G_Ic)^n + ((1 - s) G/G_IIc)^m = 1, by bisection.
@@ -144,9 +143,15 @@ void summarise(CutResult& result, const Recorder& recorder, const State& state, 
   result.bottom_tangential = mean(&ForceSample::bottom_tangential);
   result.crack_lead = mean(&ForceSample::crack_lead);
   result.deepest_penetration = mean(&ForceSample::penetration).value / scene.cell();
+  // The chip reaches the place where it is measured later than the force settles: it has a start of its own.
+  const std::vector<double> ratio = series(recorder.chip(), &ChipShape::ratio);
+  std::size_t grown = from;
+  for (std::size_t k = from; k < ratio.size(); ++k)
+    if (!std::isfinite(ratio[k])) grown = k + 1;
+  const std::size_t chip_from = std::min(truncation_point(ratio, grown), ratio.size() - 1);
   const auto chip_mean = [&](auto member) {
     const std::vector<double> values = series(recorder.chip(), member);
-    return batch_mean(std::span(values).subspan(std::min(part.settled, history.size() - 1)));
+    return batch_mean(std::span(values).subspan(chip_from));
   };
   result.chip_ratio = chip_mean(&ChipShape::ratio);
   result.chip_curvature = chip_mean(&ChipShape::curvature);
