@@ -19,7 +19,7 @@ chip::Measurements measurements_of(const data::Curve& curve) {
     cut.tool_radius = point.tool_radius;
     cut.repeats = point.F_c.repeats;
     cut.line = point.line;
-    cuts.push_back(std::move(cut));
+    cuts.push_back(cut);
   }
   return chip::Measurements(std::move(cuts));
 }

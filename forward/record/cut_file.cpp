@@ -133,6 +133,7 @@ std::vector<double> over_history(const std::vector<ForceSample>& history, Value 
 
 std::vector<Field> history_fields(const std::vector<ForceSample>& history) {
   std::vector<Field> fields;
+  fields.reserve(std::size(history_columns));
   for (const auto& column : history_columns)
     fields.push_back({column.name, column.unit, 1,
                       over_history(history, [&](const ForceSample& sample) { return sample.*column.value; })});
@@ -141,6 +142,7 @@ std::vector<Field> history_fields(const std::vector<ForceSample>& history) {
 
 std::vector<Field> ledger_fields(const std::vector<ForceSample>& history) {
   std::vector<Field> fields;
+  fields.reserve(std::size(ledger_columns) + 1);
   for (const auto& column : ledger_columns)
     fields.push_back({column.name, column.unit, 1,
                       over_history(history, [&](const ForceSample& sample) { return sample.ledger.*column.value; })});

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <spawn.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <array>
 #include <cerrno>
@@ -12,8 +13,6 @@
 
 #include "inverse/commands/commands.hpp"
 #include "models/base/error.hpp"
-
-extern "C" char** environ;
 
 namespace kerf::commands {
 namespace {
