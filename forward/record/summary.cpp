@@ -28,23 +28,31 @@ struct SteadyPart {
   bool steady;
 };
 
-/// Steady when, after the truncation point, at least two depths remain and their halves agree to 1 %, or, where
-/// friction makes the force wander, to twice the scatter of their difference but never worse than 3 %.
+/// Two depths at least, whose halves agree to 1 %, or, where friction makes the force wander, to twice the scatter of
+/// their difference but never worse than 3 %.
+bool is_steady(std::span<const double> force, const Scene& scene) {
+  if (force.size() < 2 * static_cast<std::size_t>(scene.resolution.cells_through_chip)) return false;
+  const Estimate first = batch_mean(force.first(force.size() / 2)), second = batch_mean(force.last(force.size() / 2));
+  const double mean = std::abs(batch_mean(force).value);
+  const double scatter = 2.0 * std::hypot(first.standard_error, second.standard_error);
+  return std::abs(first.value - second.value) < std::clamp(scatter, 0.01 * mean, 0.03 * mean);
+}
+
 SteadyPart steady_part(const std::vector<double>& force, const Scene& scene) {
+  const std::span<const double> whole(force);
   const std::size_t truncated = truncation_point(force, earliest(scene));
-  std::size_t from = truncated;
   if (truncated == force.size()) return {truncated, false};
   // The truncation point sits deep in a quiet record: whatever before it has the same mean counts as well.
-  const auto mean_from = [&](std::size_t k) { return batch_mean(std::span(force).subspan(k)).value; };
-  const double settled = mean_from(truncated);
-  while (from > earliest(scene) && std::abs(mean_from(from - 1) - settled) < 0.002 * std::abs(settled)) --from;
-  const std::size_t shortest = 2 * static_cast<std::size_t>(scene.resolution.cells_through_chip);
-  if (from + shortest > force.size()) return {from, false};
-  const std::span<const double> rest(force.data() + from, force.size() - from);
-  const Estimate first = batch_mean(rest.first(rest.size() / 2)), second = batch_mean(rest.last(rest.size() / 2));
-  const double mean = std::abs(batch_mean(rest).value);
-  const double scatter = 2.0 * std::hypot(first.standard_error, second.standard_error);
-  return {from, std::abs(first.value - second.value) < std::clamp(scatter, 0.01 * mean, 0.03 * mean)};
+  const double settled = batch_mean(whole.subspan(truncated)).value;
+  std::size_t from = truncated;
+  while (from > earliest(scene) &&
+         std::abs(batch_mean(whole.subspan(from - 1)).value - settled) < 0.002 * std::abs(settled))
+    --from;
+  // A slow run-in, as friction makes it, may take up to half of the record.
+  const std::size_t middle = std::max(truncated, force.size() / 2);
+  for (const std::size_t start : {from, truncated, middle})
+    if (is_steady(whole.subspan(start), scene)) return {start, true};
+  return {from, false};
 }
 
 /// G_c of the mixed-mode criterion at a mode I share: (s G/G_Ic)^n + ((1 - s) G/G_IIc)^m = 1, by bisection.
