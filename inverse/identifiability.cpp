@@ -116,7 +116,7 @@ Verdict judge(double value, double standard_error, const Interval& interval, con
   if (open_below) return Verdict::bounded_above;
   if (open_above) return Verdict::bounded_below;
   const double half_width = 0.5 * (interval.upper - interval.lower) / normal_quantile;
-  return std::max(standard_error, half_width) <= 0.5 * std::abs(value) ? Verdict::measured : Verdict::bounded;
+  return std::max(standard_error, half_width) <= std::abs(value) / 3.0 ? Verdict::measured : Verdict::bounded;
 }
 
 Identifiability identify(const LocalModel& model, const Misfit& misfit, const ParameterSpace& space) {
