@@ -44,8 +44,8 @@ struct Identifiability {
 
 /// Standard errors from the weighted Jacobian (singular values shown, never a pseudo-inverse: a combination the data do
 /// not see has an infinite error), 95 % intervals from the profile of the misfit over the local model, and a verdict
-/// from both. A parameter is measured when its relative standard error is at most a third and its interval keeps away from
-/// the bounds of the search.
+/// from both. A parameter is measured when its relative standard error is at most a third and its interval keeps away
+/// from the bounds of the search.
 Identifiability identify(const LocalModel& model, const Misfit& misfit, const ParameterSpace& space);
 
 /// The verdict on an interval inside bounds.
