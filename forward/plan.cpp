@@ -24,7 +24,7 @@ std::vector<Stage> plan(const Scene& scene) {
   add("project", "grid velocities p/m of both sides of the crack plane", project_velocity);
   add("markers", "crack-face markers follow the projected velocity of their side", move_markers);
   // A sharp tip runs inside the opened crack, clear of the lower face by a fiftieth of the depth.
-  const double lift = scene.edge_contact ? 0.0 : (getenv("LIFT") ? atof(getenv("LIFT")) : 0.02) * scene.cut.depth;
+  const double lift = scene.edge_contact ? 0.0 : 0.02 * scene.cut.depth;
   add("tool", "the tool advances and its tip follows the lower face", [&scene, lift](State& state) {
     move_tool(state, scene.cut);
     follow_face(state, scene.cut.depth, lift);
