@@ -16,6 +16,10 @@ class Cubic final : public TractionLaw {
     const double d = opening / critical_opening_;
     return d < 1.0 ? 6.75 * strength_ * d * (1.0 - d) * (1.0 - d) : 0.0;
   }
+  double slope(double opening) const override {
+    const double d = opening / critical_opening_;
+    return d < 1.0 ? 6.75 * strength_ / critical_opening_ * (1.0 - d) * (1.0 - 3.0 * d) : 0.0;
+  }
   double area(double opening) const override {
     const double d = opening / critical_opening_;
     return d < 1.0 ? toughness_ * d * d * (6.0 - 8.0 * d + 3.0 * d * d) : toughness_;
