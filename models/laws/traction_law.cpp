@@ -2,11 +2,15 @@
 
 #include "models/base/error.hpp"
 #include "models/laws/cubic.hpp"
+#include "models/laws/exponential.hpp"
+#include "models/laws/linear_softening.hpp"
+#include "models/laws/sawtooth.hpp"
+#include "models/laws/trilinear.hpp"
 
 namespace kerf::laws {
 
 const std::vector<TractionLawKind>& traction_laws() {
-  static const std::vector<TractionLawKind> laws{cubic()};
+  static const std::vector<TractionLawKind> laws{cubic(), exponential(), linear_softening(), sawtooth(), trilinear()};
   return laws;
 }
 
