@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstddef>
+
+namespace kerf::laws {
+
+/// Velocity gradient times the time step, l_ij = dt d v_i / d x_j, one entry per material point.
+struct StrainIncrement {
+  const double *xx, *xy, *yx, *yy;
+};
+
+/// What the material laws update, structure of arrays: Kirchhoff stress (MPa) in the frame of the grid, the equivalent
+/// plastic strain, and the unit vector of the material's x axis. Laws without axes never look at the last two.
+struct MaterialPoints {
+  double *xx, *yy, *zz, *xy, *plastic_strain;
+  double *axis_x = nullptr, *axis_y = nullptr;
+};
+
+/// Stress of one point in the frame of the grid, with the material's x axis.
+struct StressPoint {
+  double xx, yy, zz, xy;
+  double axis_x = 1.0, axis_y = 0.0;
+};
+
+/// The rotation of one step: c and s of the spin (l_yx - l_xy)/2 by the half-angle tangent, so c^2 + s^2 = 1 exactly in
+/// real arithmetic whatever the step, and the angle is right to the third order.
+struct StepRotation {
+  double c, s;
+};
+inline StepRotation step_rotation(double l_xy, double l_yx) {
+  const double half_spin = 0.25 * (l_yx - l_xy);
+  const double scale = 1.0 / (1.0 + half_spin * half_spin);
+  return {.c = (1.0 - half_spin * half_spin) * scale, .s = 2.0 * half_spin * scale};
+}
+
+}  // namespace kerf::laws
