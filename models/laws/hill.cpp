@@ -1,0 +1,329 @@
+#include "models/laws/hill.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "models/base/error.hpp"
+#include "models/laws/return_map.hpp"
+
+namespace kerf::laws {
+namespace {
+
+/// Strengths that differ by orders of magnitude grade the matrices below; built once, they can afford the digits.
+using Real = long double;
+using Square = Eigen::Matrix<Real, 3, 3>;
+using Rows = Eigen::Matrix<Real, 2, 3>;
+
+Square compliance_of(const Hill::Constants& c) {
+  Square s;
+  const Real x = c.modulus_x, y = c.modulus_y, z = c.modulus_z;
+  s << 1 / x, -c.poisson_xy / x, -c.poisson_xz / x,  //
+      -c.poisson_xy / x, 1 / y, -c.poisson_yz / y,   //
+      -c.poisson_xz / x, -c.poisson_yz / y, 1 / z;
+  return s;
+}
+
+/// Rows of B for the normal stresses over (xx, yy, zz), times a stress. In u = s_xx - s_zz and v = s_yy - s_zz the
+/// normal part of (1) has the matrix [[G+H, -H], [-H, F+H]], whose Cholesky factor is written in a = 1/Y_x, b, c so
+/// that nothing cancels: FG + GH + HF = (a+b+c)(b+c-a)(c+a-b)(a+b-c)/4, as in Heron's formula.
+Rows normal_factor(const Hill::Constants& constants) {
+  const Real a = 1 / Real(constants.yield_x), b = 1 / Real(constants.yield_y), c = 1 / Real(constants.yield_z);
+  Real coupling = 0, along_v = b;
+  if (a > 0) {
+    coupling = ((c - b) * (c + b) / a - a) / 2;  // -H/a
+    // The triangle may be flat up to rounding.
+    along_v = std::sqrt(std::max(Real(0), (a + b + c) * (b + c - a) * (c + a - b) * (a + b - c))) / (2 * a);
+  }
+  Rows rows;
+  rows << a, coupling, -a - coupling,  //
+      0, along_v, -along_v;
+  return rows;
+}
+
+double reference_strength(const Hill::Constants& c) {
+  for (const double strength : {c.yield_x, c.yield_y, c.yield_z, std::numbers::sqrt3 * c.shear_yield_xy})
+    if (std::isfinite(strength)) return strength;
+  return 1.0;  // never yields: (1) is zero whatever the stress
+}
+
+}  // namespace
+
+Block Hill::block() {
+  constexpr double stiffest = 2e6, strongest = 1e6;
+  return {.path = "material",
+          .variant = "hill",
+          .meaning = "orthotropic elastic, Hill plastic, plane strain; x along the cut, y across the crack plane",
+          .parameters =
+              {number("modulus_x", "MPa", 1e-2, stiffest, "Young's modulus along the cut E_x"),
+               number("modulus_y", "MPa", 1e-2, stiffest, "Young's modulus across the crack plane E_y"),
+               number("modulus_z", "MPa", 1e-2, stiffest, "Young's modulus along the tool's edge E_z"),
+               number("shear_modulus_xy", "MPa", 1e-2, stiffest, "shear modulus G_xy"),
+               number("poisson_xy", "1", -10, 10, "Poisson's ratio nu_xy: shrinkage along y when pulled along x"),
+               number("poisson_xz", "1", -10, 10, "Poisson's ratio nu_xz: shrinkage along z when pulled along x"),
+               number("poisson_yz", "1", -10, 10, "Poisson's ratio nu_yz: shrinkage along z when pulled along y"),
+               number("density", "kg/m^3", 1.0, 3e4, "mass density rho"),
+               number("yield_x", "MPa", 1e-4, strongest, "yield stress along x; left out: infinite").if_given(),
+               number("yield_y", "MPa", 1e-4, strongest, "yield stress along y; left out: infinite").if_given(),
+               number("yield_z", "MPa", 1e-4, strongest, "yield stress along z; left out: infinite").if_given(),
+               number("shear_yield_xy", "MPa", 1e-4, strongest, "shear yield stress; left out: infinite").if_given(),
+               number("hardening_coefficient", "1", 0.0, 1e4, "K of the hardening 1 + K eps_p^n").or_else("0"),
+               number("hardening_exponent", "1", 0.05, 5.0, "n of the hardening 1 + K eps_p^n").or_else("1")},
+          .required = true};
+}
+
+Hill Hill::from(const Values& values) {
+  const auto strength = [&](const char* key) { return values.has(key) ? values.number(key) : infinite; };
+  const Constants constants{.modulus_x = values.number("modulus_x"),
+                            .modulus_y = values.number("modulus_y"),
+                            .modulus_z = values.number("modulus_z"),
+                            .shear_modulus_xy = values.number("shear_modulus_xy"),
+                            .poisson_xy = values.number("poisson_xy"),
+                            .poisson_xz = values.number("poisson_xz"),
+                            .poisson_yz = values.number("poisson_yz"),
+                            .density = values.number("density"),
+                            .yield_x = strength("yield_x"),
+                            .yield_y = strength("yield_y"),
+                            .yield_z = strength("yield_z"),
+                            .shear_yield_xy = strength("shear_yield_xy"),
+                            .hardening_coefficient = values.number("hardening_coefficient"),
+                            .hardening_exponent = values.number("hardening_exponent")};
+  if (const auto wrong = fault(constants))
+    throw InputError(fmt::format("{}: {}", values.where(wrong->key), wrong->reason));
+  return Hill(constants);
+}
+
+std::optional<Hill::Fault> Hill::fault(const Constants& c) {
+  const auto too_large = [](const char* key, double ratio, double modulus_i, double modulus_j) -> std::optional<Fault> {
+    const double limit = std::sqrt(modulus_i / modulus_j);
+    if (std::abs(ratio) < limit) return std::nullopt;
+    return Fault{key,
+                 fmt::format("{} = {:g} must stay within +-{:.4g} = sqrt(E_i/E_j): the elastic energy would not be "
+                             "positive",
+                             key, ratio, limit)};
+  };
+  if (auto wrong = too_large("poisson_xy", c.poisson_xy, c.modulus_x, c.modulus_y)) return wrong;
+  if (auto wrong = too_large("poisson_xz", c.poisson_xz, c.modulus_x, c.modulus_z)) return wrong;
+  if (auto wrong = too_large("poisson_yz", c.poisson_yz, c.modulus_y, c.modulus_z)) return wrong;
+  // Determinant of the compliance made pure: correlations of the three directions.
+  const double xy = c.poisson_xy * std::sqrt(c.modulus_y / c.modulus_x),
+               xz = c.poisson_xz * std::sqrt(c.modulus_z / c.modulus_x),
+               yz = c.poisson_yz * std::sqrt(c.modulus_z / c.modulus_y);
+  const double determinant = 1.0 - xy * xy - xz * xz - yz * yz - 2.0 * xy * xz * yz;
+  if (determinant < 1e-6)
+    return Fault{"poisson_xy",
+                 fmt::format("poisson_xy = {:g}, poisson_xz = {:g} and poisson_yz = {:g} together leave no positive "
+                             "elastic energy (determinant {:.3g} of the scaled compliance, must be above 1e-6)",
+                             c.poisson_xy, c.poisson_xz, c.poisson_yz, determinant)};
+
+  struct Strength {
+    const char* key;
+    double inverse;
+  };
+  std::array<Strength, 3> strengths{
+      {{"yield_x", 1.0 / c.yield_x}, {"yield_y", 1.0 / c.yield_y}, {"yield_z", 1.0 / c.yield_z}}};
+  std::sort(strengths.begin(), strengths.end(),
+            [](const Strength& p, const Strength& q) { return p.inverse > q.inverse; });
+  const double sum = strengths[1].inverse + strengths[2].inverse;
+  if (strengths[0].inverse > sum * (1.0 + 1e-12))
+    return Fault{strengths[0].key,
+                 fmt::format("{} = {:g} MPa is too low beside {} and {} for Hill's criterion: {}; its inverse must not "
+                             "exceed the sum of the other two inverses",
+                             strengths[0].key, 1.0 / strengths[0].inverse, strengths[1].key, strengths[2].key,
+                             sum > 0.0 ? fmt::format("with them it must be at least {:.6g} MPa", 1.0 / sum)
+                                       : std::string("one of them must be finite too"))};
+  return std::nullopt;
+}
+
+Hill::Hill(const Constants& constants)
+    : density(constants.density),
+      constants_(constants),
+      hardening_{.yield_stress = reference_strength(constants),
+                 .coefficient = constants.hardening_coefficient,
+                 .exponent = constants.hardening_exponent},
+      c_shear_(constants.shear_modulus_xy) {
+  if (const auto wrong = fault(constants)) throw InputError(wrong->reason);
+  const Square compliance = compliance_of(constants);
+  const Square stiffness = compliance.llt().solve(Square::Identity());
+  const auto rounded = [](Real value) { return static_cast<double>(value); };
+  c_xx_ = rounded(stiffness(0, 0));
+  c_yy_ = rounded(stiffness(1, 1));
+  c_xy_ = rounded(stiffness(0, 1));
+  c_xz_ = rounded(stiffness(0, 2));
+  c_yz_ = rounded(stiffness(1, 2));
+
+  // W and D from the singular values of B L, C = L L^T: squaring first would lose the weaker mode's digits.
+  const double reference = hardening_.yield_stress;
+  const Rows factor = reference * normal_factor(constants);
+  const Square lower = stiffness.llt().matrixL();
+  const Eigen::JacobiSVD<Rows> svd(factor * lower, Eigen::ComputeFullU);
+  const Rows modes = svd.matrixU().transpose() * factor;
+  const Rows back = modes * stiffness;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const auto row = static_cast<Eigen::Index>(k);
+    const Real singular = svd.singularValues()(row);
+    // What rounding leaves of a direction that cannot yield is no mode.
+    if (singular <= 1e-13L * svd.singularValues()(0)) continue;
+    stiffness_[k] = rounded(singular * singular);
+    for (std::size_t i = 0; i < 3; ++i) {
+      modes_[k][i] = rounded(modes(row, static_cast<Eigen::Index>(i)));
+      return_[k][i] = rounded(back(row, static_cast<Eigen::Index>(i)));
+    }
+  }
+  shear_mode_ = reference / constants.shear_yield_xy;
+  stiffness_[2] = shear_mode_ * shear_mode_ * c_shear_;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j)
+      compliance_[i][j] = rounded(compliance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)));
+}
+
+double Hill::plane_strain_modulus() const {
+  const auto reduced = [&](std::size_t i, std::size_t j) {
+    return compliance_[i][j] - compliance_[i][2] * compliance_[j][2] / compliance_[2][2];
+  };
+  const double b11 = reduced(0, 0), b22 = reduced(1, 1), b12 = reduced(0, 1), b66 = 1.0 / c_shear_;
+  return 1.0 / std::sqrt(0.5 * b11 * b22 * (std::sqrt(b22 / b11) + (2.0 * b12 + b66) / (2.0 * b11)));
+}
+
+double Hill::wave_speed(double cos, double sin) const {
+  const double xx = c_xx_ * cos * cos + c_shear_ * sin * sin, yy = c_shear_ * cos * cos + c_yy_ * sin * sin;
+  const double xy = (c_xy_ + c_shear_) * cos * sin;
+  return std::sqrt((0.5 * (xx + yy) + std::hypot(0.5 * (xx - yy), xy)) / density);
+}
+
+double Hill::elastic_energy(const StressPoint& p) const {
+  const double cc = p.axis_x * p.axis_x, ss = p.axis_y * p.axis_y, cs = p.axis_x * p.axis_y;
+  const double xx = cc * p.xx + ss * p.yy + 2.0 * cs * p.xy, yy = ss * p.xx + cc * p.yy - 2.0 * cs * p.xy;
+  const double xy = cs * (p.yy - p.xx) + (cc - ss) * p.xy;
+  const auto& s = compliance_;
+  return 0.5 * (s[0][0] * xx * xx + s[1][1] * yy * yy + s[2][2] * p.zz * p.zz + xy * xy / c_shear_) +
+         s[0][1] * xx * yy + s[0][2] * xx * p.zz + s[1][2] * yy * p.zz;
+}
+
+bool Hill::update(std::size_t n, StrainIncrement l, MaterialPoints points) const {
+  // Without a power the flow stress is arithmetic and the whole return map runs in SIMD.
+  if (hardening_.coefficient == 0.0 || hardening_.exponent == 1.0)
+    return update_with(LinearHardening{.yield_stress = hardening_.yield_stress,
+                                       .modulus = hardening_.yield_stress * hardening_.coefficient},
+                       n, l, points);
+  return update_with(hardening_, n, l, points);
+}
+
+template <class Hardening>
+bool Hill::update_with(const Hardening& hardening, std::size_t n, StrainIncrement l, MaterialPoints points) const {
+  const auto [D0, D1, D2] = stiffness_;
+  // The weakest mode there is bounds the root of (5) from above.
+  double softest = infinite;
+  for (const double D : stiffness_)
+    if (D > 0.0) softest = std::min(softest, D);
+  double unsound = 0.0;
+  bool converged = true;
+  for (std::size_t first = 0; first < n; first += batch_size) {
+    const std::size_t count = std::min(batch_size, n - first);
+    Batch xx{}, yy{}, zz{}, xy{}, eps{}, ax{}, ay{}, d_xx{}, d_yy{}, d_xy{}, spin_c{}, spin_s{};
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t k = first + i;
+      xx[i] = points.xx[k];
+      yy[i] = points.yy[k];
+      zz[i] = points.zz[k];
+      xy[i] = points.xy[k];
+      eps[i] = points.plastic_strain[k];
+      ax[i] = points.axis_x[k];
+      ay[i] = points.axis_y[k];
+      d_xx[i] = l.xx[k];
+      d_yy[i] = l.yy[k];
+      d_xy[i] = l.xy[k] + l.yx[k];
+      const auto [c, s] = step_rotation(l.xy[k], l.yx[k]);
+      spin_c[i] = c;
+      spin_s[i] = s;
+    }
+
+    // Stress seen from the old axes is the turned stress seen from the turned axes; the strain is seen from these.
+    Batch z0{}, z1{}, z2{}, q{};
+    for (std::size_t i = 0; i < batch_size; ++i) {
+      const double cc = ax[i] * ax[i], ss = ay[i] * ay[i], cs = ax[i] * ay[i];
+      const double old_xx = cc * xx[i] + ss * yy[i] + 2.0 * cs * xy[i];
+      const double old_yy = ss * xx[i] + cc * yy[i] - 2.0 * cs * xy[i];
+      const double old_xy = cs * (yy[i] - xx[i]) + (cc - ss) * xy[i];
+      const double turned_x = spin_c[i] * ax[i] - spin_s[i] * ay[i], turned_y = spin_s[i] * ax[i] + spin_c[i] * ay[i];
+      const double unit = 1.5 - 0.5 * (turned_x * turned_x + turned_y * turned_y);  // rounding must not add up
+      ax[i] = unit * turned_x;
+      ay[i] = unit * turned_y;
+      const double CC = ax[i] * ax[i], SS = ay[i] * ay[i], CS = ax[i] * ay[i];
+      const double e_xx = CC * d_xx[i] + SS * d_yy[i] + CS * d_xy[i];
+      const double e_yy = SS * d_xx[i] + CC * d_yy[i] - CS * d_xy[i];
+      const double e_xy = 2.0 * CS * (d_yy[i] - d_xx[i]) + (CC - SS) * d_xy[i];
+      xx[i] = old_xx + c_xx_ * e_xx + c_xy_ * e_yy;
+      yy[i] = old_yy + c_xy_ * e_xx + c_yy_ * e_yy;
+      zz[i] += c_xz_ * e_xx + c_yz_ * e_yy;
+      xy[i] = old_xy + c_shear_ * e_xy;
+      z0[i] = modes_[0][0] * xx[i] + modes_[0][1] * yy[i] + modes_[0][2] * zz[i];
+      z1[i] = modes_[1][0] * xx[i] + modes_[1][1] * yy[i] + modes_[1][2] * zz[i];
+      z2[i] = shear_mode_ * xy[i];
+      q[i] = std::sqrt(z0[i] * z0[i] + z1[i] * z1[i] + z2[i] * z2[i]);
+      const double size = std::abs(xx[i]) + std::abs(yy[i]) + std::abs(zz[i]) + std::abs(xy[i]) + std::abs(ax[i]);
+      unsound = size < infinite ? unsound : 1.0;
+    }
+
+    Batch upper{};
+    double yields = 0.0;
+    for (std::size_t i = 0; i < batch_size; ++i) {
+      if (q[i] > hardening.yield_stress) {
+        const double flow = hardening.flow_stress(eps[i]);
+        upper[i] = q[i] > flow * (1.0 + return_tolerance) ? (q[i] / flow - 1.0) / softest : 0.0;
+        yields = upper[i] > 0.0 ? 1.0 : yields;
+      }
+    }
+    if (yields > 0.0) {
+      Batch m{};
+      converged &= find_roots(
+          [&](const Batch& at, Batch& value, Batch& slope) {
+            for (std::size_t i = 0; i < batch_size; ++i) {
+              const double k0 = 1.0 / (1.0 + at[i] * D0), k1 = 1.0 / (1.0 + at[i] * D1), k2 = 1.0 / (1.0 + at[i] * D2);
+              const double s0 = z0[i] * k0, s1 = z1[i] * k1, s2 = z2[i] * k2;
+              const double squared = s0 * s0 + s1 * s1 + s2 * s2 + 1e-300;
+              const double now = std::sqrt(squared);
+              const double now_slope = -(D0 * k0 * s0 * s0 + D1 * k1 * s1 * s1 + D2 * k2 * s2 * s2) / now;
+              const double strain_slope = (k0 * s0 * s0 + k1 * s1 * s1 + k2 * s2 * s2) / now;
+              const double strain = eps[i] + at[i] * now;
+              const double flow = hardening.flow_stress(strain);
+              value[i] = flow / now - 1.0;
+              slope[i] = (hardening.slope(strain) * strain_slope - flow * now_slope / now) / now;
+            }
+          },
+          upper, m);
+      for (std::size_t i = 0; i < batch_size; ++i) {
+        const double s0 = z0[i] / (1.0 + m[i] * D0), s1 = z1[i] / (1.0 + m[i] * D1), s2 = z2[i] / (1.0 + m[i] * D2);
+        eps[i] += m[i] * std::sqrt(s0 * s0 + s1 * s1 + s2 * s2);
+        xx[i] -= m[i] * (return_[0][0] * s0 + return_[1][0] * s1);
+        yy[i] -= m[i] * (return_[0][1] * s0 + return_[1][1] * s1);
+        zz[i] -= m[i] * (return_[0][2] * s0 + return_[1][2] * s1);
+        xy[i] /= 1.0 + m[i] * D2;
+      }
+    }
+
+    for (std::size_t i = 0; i < batch_size; ++i) {
+      const double cc = ax[i] * ax[i], ss = ay[i] * ay[i], cs = ax[i] * ay[i];
+      const double m_xx = xx[i], m_yy = yy[i], m_xy = xy[i];
+      xx[i] = cc * m_xx + ss * m_yy - 2.0 * cs * m_xy;
+      yy[i] = ss * m_xx + cc * m_yy + 2.0 * cs * m_xy;
+      xy[i] = cs * (m_xx - m_yy) + (cc - ss) * m_xy;
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t k = first + i;
+      points.xx[k] = xx[i];
+      points.yy[k] = yy[i];
+      points.zz[k] = zz[i];
+      points.xy[k] = xy[i];
+      points.plastic_strain[k] = eps[i];
+      points.axis_x[k] = ax[i];
+      points.axis_y[k] = ay[i];
+    }
+  }
+  return converged && unsound == 0.0;
+}
+
+}  // namespace kerf::laws
