@@ -1,0 +1,40 @@
+#pragma once
+
+#include <concepts>
+#include <variant>
+#include <vector>
+
+#include "models/laws/hill.hpp"
+#include "models/laws/j2.hpp"
+
+namespace kerf::laws {
+
+/// The registered material laws; a new one is one file and one line here. What a law must offer is `MaterialLaw` below;
+/// the solver asks by std::visit once per call, not once per point.
+using Material = std::variant<J2<LinearHardening>,      //
+                              J2<PowerHardening>,       //
+                              J2<SaturatingHardening>,  //
+                              Hill>;
+
+template <class Law>
+concept MaterialLaw = requires(const Law& law, const Values& values, StressPoint stress, StrainIncrement strain,
+                               MaterialPoints points) {
+  { Law::block() } -> std::same_as<Block>;
+  { Law::from(values) } -> std::same_as<Law>;
+  { Law::has_axes } -> std::convertible_to<bool>;
+  { law.density } -> std::convertible_to<double>;
+  { law.plane_strain_modulus() } -> std::same_as<double>;
+  { law.wave_speed(1.0, 0.0) } -> std::same_as<double>;
+  { law.shear_yield() } -> std::same_as<double>;
+  { law.elastic_energy(stress) } -> std::same_as<double>;
+  { law.plastic_work(0.0) } -> std::same_as<double>;
+  { law.update(std::size_t{8}, strain, points) } -> std::same_as<bool>;
+};
+
+/// One [material] block per law.
+const std::vector<Block>& material_blocks();
+
+/// The law that `values` names. Its variant was validated by the reader.
+Material make_material(const Values& values);
+
+}  // namespace kerf::laws
