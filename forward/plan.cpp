@@ -1,9 +1,11 @@
 #include "forward/plan.hpp"
 
 #include <cmath>
-#include <numbers>
 
-#include "forward/effects/edge_contact.hpp"
+#include "forward/effects/bridging.hpp"
+#include "forward/effects/grips.hpp"
+#include "forward/effects/thermostat.hpp"
+#include "forward/effects/xpic.hpp"
 #include "forward/mpm/crack.hpp"
 #include "forward/mpm/tool.hpp"
 #include "forward/mpm/transfer.hpp"
@@ -12,10 +14,9 @@ namespace kerf::forward {
 
 std::vector<Stage> plan(const Scene& scene) {
   // Stiff enough that faces overlap by about a hundredth of a cell at yield, soft enough for the elastic time step.
-  const double stiffness = 2.0 * scene.material.plane_strain_modulus() / scene.cell();
-  const double shear_yield = scene.material.yield_stress / std::numbers::sqrt3;
-  const double pic =
-      scene.pic_damping ? 1.0 - std::exp(-scene.pic_damping->rate * scene.resolution.courant_number) : 0.0;
+  const double stiffness = 2.0 * laws::plane_strain_modulus(scene.material) / scene.cell();
+  const double cap = scene.friction ? scene.friction->yield_cap * laws::shear_yield(scene.material) : 0.0;
+  const auto each_step = [&](double rate) { return 1.0 - std::exp(-rate * scene.resolution.courant_number); };
 
   std::vector<Stage> stages;
   const auto add = [&](std::string name, std::string does, std::function<void(State&)> apply) {
@@ -25,35 +26,46 @@ std::vector<Stage> plan(const Scene& scene) {
   add("markers", "crack-face markers follow the projected velocity of their side", move_markers);
   // A sharp tip runs inside the opened crack, clear of the lower face by a fiftieth of the depth.
   const double lift = scene.edge_contact ? 0.0 : 0.02 * scene.cut.depth;
-  add("tool", "the tool advances and its tip follows the lower face", [&scene, lift](State& state) {
-    move_tool(state, scene.cut);
-    follow_face(state, scene.cut.depth, lift);
-  });
-  add("stress", "velocity gradients, J2 stresses (stress first), internal forces",
+  if (scene.grips)
+    add("grips", "the grips' anchors move apart and pull the arms", [&scene, stiffness](State& state) {
+      move_grips(state, scene);
+      pull_arms(state, scene, stiffness);
+    });
+  else
+    add("tool", "the tool advances and its tip follows the lower face", [&scene, lift](State& state) {
+      move_tool(state, scene);
+      follow_face(state, scene.cut.depth, lift);
+    });
+  add("stress", "velocity gradients, stresses of the material (stress first), internal forces",
       [&scene](State& state) { update_stress(state, scene.material); });
+  if (scene.bridging && scene.bridging->cut)
+    add("cut bonds", "the tool's edge takes away the bonds that it has passed",
+        [&scene](State& state) { cut_bonds(state, scene); });
   add("cohesion", "cohesive tractions between the faces; pairs break at the mixed-mode criterion",
       [&scene](State& state) { pull_faces(state, scene.cohesive); });
   add("closing", "the upper face cannot enter the lower one",
       [stiffness](State& state) { close_faces(state, stiffness); });
-  add("rake face", "the rake face presses on the upper side",
-      [&scene, stiffness](State& state) { press_rake_face(state, scene.tool.rake, stiffness); });
-  if (scene.friction)
-    add("friction", "the chip rubs on the rake face, up to the slip limit and the yield cap",
-        [&scene, stiffness, shear_yield](State& state) {
-          rub_rake_face(state, scene.tool.rake, *scene.friction, shear_yield, stiffness);
+  for (const Contact& contact : contacts(scene))
+    add(contact.name,
+        contact.does + (contact.friction > 0.0 ? " and rubs, up to the slip limit and the yield cap" : ""),
+        [&scene, contact, options = PressOptions{stiffness, cap}](State& state) {
+          press(state, contact, scene, options);
         });
-  if (scene.edge_contact)
-    add("edge", "the worn edge presses on the lower side",
-        [&scene, stiffness](State& state) { press_edge(state, *scene.edge_contact, scene.tool.clearance, stiffness); });
-  else
-    add("underside", "the lower face cannot rise into the tool",
-        [&scene, stiffness](State& state) { block_underside(state, scene.tool.clearance, stiffness); });
   add("spread", "marker forces go to the nodes they were interpolated from", spread_marker_forces);
   add("accelerate", "new grid velocities under the fixed boundary", accelerate);
-  add("advance",
-      pic > 0.0 ? "particles move (FLIP with a share of PIC, booked as damping) and pass on their momentum"
-                : "particles move (FLIP) and pass on their momentum",
-      [pic](State& state) { advance(state, pic); });
+  if (scene.xpic_damping) {
+    add("filter", "what XPIC blends towards",
+        [&scene](State& state) { filter_velocity(state, scene.xpic_damping->order); });
+    add("advance", "particles move (FLIP with a share of XPIC, booked as damping) and pass on their momentum",
+        [rate = each_step(scene.xpic_damping->rate)](State& state) { advance_filtered(state, rate); });
+  } else if (scene.pic_damping && scene.pic_damping->rate > 0.0) {
+    add("advance", "particles move (FLIP with a share of PIC, booked as damping) and pass on their momentum",
+        [rate = each_step(scene.pic_damping->rate)](State& state) { advance(state, rate); });
+  } else {
+    add("advance", "particles move (FLIP) and pass on their momentum", [](State& state) { advance(state, 0.0); });
+  }
+  if (scene.thermostat)
+    add("thermostat", "feedback damping holds the kinetic energy down", KineticThermostat(*scene.thermostat, scene));
   return stages;
 }
 

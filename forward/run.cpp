@@ -1,7 +1,11 @@
 #include "forward/run.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <stdexcept>
 
 #include "forward/mpm/window.hpp"
 #include "forward/plan.hpp"
@@ -10,6 +14,11 @@
 #include "forward/record/summary.hpp"
 
 namespace kerf::forward {
+namespace {
+
+constexpr double specimen_readings = 200;  // along the opening of a specimen
+
+}  // namespace
 
 CutResult run(const Scene& scene, const std::function<bool(const Progress&)>& progress) {
   const auto begin = std::chrono::steady_clock::now();
@@ -20,32 +29,39 @@ CutResult run(const Scene& scene, const std::function<bool(const Progress&)>& pr
   Recorder recorder;
   CutResult result;
   const double length = scene.cut.travel * scene.cut.depth;
-  double next_crossing = scene.cell();
+  const double crossing = scene.grips ? length / specimen_readings : scene.cell_length();
+  double next_crossing = crossing;
   while (state.tool.x < length) {
     for (const Stage& stage : stages) stage.apply(state);
     state.time += state.step;
     recorder.add_step(state);
     ++result.cost.steps;
     result.cost.particle_steps += static_cast<std::int64_t>(state.particles.begin[2]);
-    if (state.broken_down) break;
+    if (!state.breakdown.empty()) break;
     if (state.tool.x < next_crossing) continue;
 
     recorder.add_crossing(state, scene);
-    next_crossing += scene.cell();
-    shift_window(state, scene);
+    next_crossing += crossing;
+    if (!scene.grips) shift_window(state, scene);
     const ForceSample& last = recorder.history().back();
     if (progress && !progress({state.tool.x, length, last.F_c, elapsed()})) {
       result.refusals.emplace_back("interrupted");
       break;
     }
-    if (!std::isfinite(last.F_c) || well_enough_known(recorder.history(), scene)) break;
+    if (!std::isfinite(last.F_c) || (!scene.grips && well_enough_known(recorder.history(), scene))) break;
   }
-  if (state.broken_down)
-    result.refusals.emplace_back("broke down: a particle left the grid or its position is not a number");
+  if (!state.breakdown.empty())
+    result.refusals.push_back(fmt::format("broke down after {:.3g} mm: {}", state.tool.x, state.breakdown));
   result.cost.wall_seconds = elapsed();
   summarise(result, recorder, state, scene);
   judge(result, scene);
   return result;
+}
+
+const FaceResult& CutResult::face(ToolFace which) const {
+  const auto found = std::find_if(faces.begin(), faces.end(), [&](const FaceResult& f) { return f.face == which; });
+  if (found == faces.end()) throw std::out_of_range(std::string("this tool has no ") + forward::name(which));
+  return *found;
 }
 
 }  // namespace kerf::forward

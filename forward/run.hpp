@@ -1,11 +1,13 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "forward/scene/scene.hpp"
+#include "forward/scene/tool_face.hpp"
 #include "models/base/estimate.hpp"
 
 namespace kerf::forward {
@@ -16,17 +18,26 @@ struct Ledger {
   double residue() const { return tool_work - fracture - plastic - elastic - kinetic - friction - damping; }
 };
 
+/// What a cracked specimen tells about its resistance at one instant.
+struct Extension {
+  double opening = 0;      ///< of the grip, mm
+  double crack = 0;        ///< from the notch to the foremost pair past the peak of its law, mm
+  double release = 0;      ///< energy release rate J read at the grips, N/mm
+  double at_notch_I = 0;   ///< area under the mode I law up to the opening at the notch, N/mm ...
+  double at_notch_II = 0;  ///< ... and under the mode II law: together the same J, read at the crack
+};
+
 /// One whole cell crossing of the tool: means over the crossing, per unit width (N/mm).
 struct ForceSample {
-  double travel;                        ///< tool position at the crossing's end, mm
-  double rake_normal, rake_tangential;  ///< N and T on the rake face
-  double slip_limit;                    ///< T when every point of the rake face slides
-  double bottom_normal, bottom_tangential;
+  double travel;                                ///< tool position at the crossing's end, mm
+  std::array<FaceForce, tool_face_count> face;  ///< normal force, friction and contact length of every tool face
   double F_c, F_t;
-  double crack_lead;   ///< mm
-  double fracture_I;   ///< mode I part of ledger.fracture
-  double penetration;  ///< deepest of a crack face into the tool, mm
-  Ledger ledger;       ///< state at the crossing's end
+  double crack_lead;                    ///< mm
+  Extension extension;                  ///< of a specimen in grips
+  double fracture_I;                    ///< mode I part of ledger.fracture
+  double broken_length, broken_energy;  ///< path whose bonds are gone, mm, and what their laws had used up, N mm/mm
+  double penetration;                   ///< deepest of a crack face into the tool, mm
+  Ledger ledger;                        ///< state at the crossing's end
 };
 
 enum class Branch { touching, bending };
@@ -42,29 +53,38 @@ struct Snapshot {
   std::vector<double> x, y, velocity_x, velocity_y, equivalent_stress, pressure, plastic_strain;
   std::vector<int> side;  ///< +1 above the crack plane (chip), -1 below
   std::vector<double> upper_face_x, upper_face_y, lower_face_x, lower_face_y;
-  double tool_tip_x = 0, tool_tip_y = 0, cell = 0;
+  double tool_tip_x = 0, tool_tip_y = 0, tip_radius = 0, cell = 0;
+};
+
+/// One face of the tool: force on it per width (N/mm), friction positive against the sliding, and contact length (mm).
+struct FaceResult {
+  ToolFace face;
+  Estimate normal, tangential, contact_length;
 };
 
 /// Everything a cut tells. A run that failed is a value too: `accepted` is false and `refusals` says why.
 struct CutResult {
-  Estimate F_c, F_t;  ///< N/mm per unit width, means over the steady part
-  Estimate rake_normal, rake_tangential, bottom_normal, bottom_tangential;
-  double sliding_share = 1;  ///< T over its slip limit: 1 when the whole contact slides
-  Estimate chip_ratio;       ///< chip thickness / depth of cut
-  Estimate chip_curvature;   ///< 1/mm; positive curls away from the tool
-  Estimate crack_lead;       ///< mm from the tool tip to the foremost broken pair
-  double process_zone = 0;   ///< mm of crack path along which unbroken pairs have used over 5 % of their toughness
+  Estimate F_c, F_t;              ///< N/mm per unit width, means over the steady part
+  std::vector<FaceResult> faces;  ///< of the faces that the scene's tool has
+  double sliding_share = 1;       ///< T over its slip limit: 1 when the whole contact slides
+  Estimate chip_ratio;            ///< chip thickness / depth of cut
+  Estimate chip_curvature;        ///< 1/mm; positive curls away from the tool
+  Estimate crack_lead;            ///< mm from the tool tip to the foremost broken pair
+  double process_zone = 0;        ///< mm of crack path along which unbroken pairs have used over 5 % of their toughness
   Branch branch = Branch::touching;
   double mode_I_fraction = 0;
-  double fracture_energy_ratio = 0;  ///< booked energy per new area over the law's
+  double fracture_energy = 0;        ///< booked per new area, N/mm
+  double fracture_energy_ratio = 0;  ///< booked energy per tool travel over what a broken pair had used up
   double deepest_penetration = 0;    ///< of a crack face into the tool, in cells
   bool steady = false;
   double steady_from = 0;  ///< tool travel, mm
   bool accepted = false;
-  std::vector<std::string> refusals;  ///< failed acceptance tests, in words with their numbers
+  const FaceResult& face(ToolFace which) const;  ///< throws std::out_of_range when the tool has no such face
+  std::vector<std::string> refusals;             ///< failed acceptance tests, in words with their numbers
   Ledger ledger;
   Cost cost;
   std::vector<ForceSample> history;
+  bool is_specimen = false;  ///< pulled by grips: `history[i].extension` is its R-curve, and there is no steady force
   Snapshot snapshot;
 };
 

@@ -20,73 +20,126 @@ void add_pair_force(Crack& crack, std::size_t k, double x, double y) {
   crack.face[below].force_y[k] -= y;
 }
 
+void move_face(State& state, Face& face, Side side) {
+  const Grid& grid = state.grid;
+  const VelocityField& field = grid.side[side];
+  for (std::size_t k = 0; k < face.size(); ++k) {
+    face.force_x[k] = face.force_y[k] = 0.0;
+    const double column = grid.column_of(face.x[k]), row = grid.row_of(face.y[k]);
+    face.inverse_mass[k] = 0.0;
+    if (!grid.holds(column, row)) continue;
+    const Spline sx(column), sy(row);
+    double mass = 0.0;
+    Lanes momentum{};
+    for (int j = 0; j < 3; ++j) {
+      const std::size_t node = grid.node(sx.base, sy.base + j);
+      const double w = sy.weight(j);
+      for (int i = 0; i < 3; ++i) mass += w * sx.weight(i) * field.mass[node + static_cast<std::size_t>(i)];
+      momentum += w * load(&field.momentum[2 * node]);
+    }
+    if (mass <= state.smallest_mass) continue;
+    momentum *= sx.row_weights();
+    face.inverse_mass[k] = 1.0 / mass;
+    face.velocity_x[k] = sum_x(momentum) / mass;
+    face.velocity_y[k] = sum_y(momentum) / mass;
+    face.node_column[k] = sx.base;
+    face.node_row[k] = sy.base;
+    face.offset_x[k] = sx.f;
+    face.offset_y[k] = sy.f;
+    face.x[k] += state.step * face.velocity_x[k];
+    face.y[k] += state.step * face.velocity_y[k];
+  }
+}
+
+void spread_face(State& state, const Face& face, Side side) {
+  VelocityField& field = state.grid.side[side];
+  for (std::size_t k = 0; k < face.size(); ++k) {
+    if (face.inverse_mass[k] == 0.0 || (face.force_x[k] == 0.0 && face.force_y[k] == 0.0)) continue;
+    const Spline sx(face.node_column[k], face.offset_x[k]), sy(face.node_row[k], face.offset_y[k]);
+    for (int j = 0; j < 3; ++j)
+      for (int i = 0; i < 3; ++i) {
+        const std::size_t node = state.grid.node(sx.base + i, sy.base + j);
+        const double share = sx.weight(i) * sy.weight(j) * field.mass[node] * face.inverse_mass[k];
+        field.force[2 * node] += share * face.force_x[k];
+        field.force[2 * node + 1] += share * face.force_y[k];
+      }
+  }
+}
+
+/// Tractions of one pair at openings (normal >= 0, |shear|), given the largest so far, and whether it fails.
+struct Bond {
+  double normal, shear;
+  bool fails;
+};
+
+Bond decoupled(const Cohesive& law, double normal, double shear, double largest_normal, double largest_shear) {
+  const bool areas = law.mixed_mode == MixedMode::areas;
+  const double now_normal = std::max(normal, largest_normal), now_shear = std::max(shear, largest_shear);
+  const auto used = [areas](const laws::TractionLaw& mode, double largest) {
+    return (areas ? mode.area(largest) : mode.dissipated(largest)) / mode.toughness();
+  };
+  const double share_I = used(*law.mode_I, now_normal), share_II = used(*law.mode_II, now_shear);
+  return {traction(*law.mode_I, normal, largest_normal), traction(*law.mode_II, shear, largest_shear),
+          std::pow(share_I, law.exponent_n) + std::pow(share_II, law.exponent_m) >= 1.0};
+}
+
+/// Both modes follow their laws at one common share of the critical openings (Tvergaard 1990).
+Bond coupled(const Cohesive& law, double normal, double shear, double largest_normal, double largest_shear) {
+  const double critical_I = law.mode_I->critical_opening(), critical_II = law.mode_II->critical_opening();
+  const double now = std::hypot(normal / critical_I, shear / critical_II);
+  const double most = std::max(now, std::hypot(largest_normal / critical_I, largest_shear / critical_II));
+  if (most == 0.0) return {0.0, 0.0, false};
+  return {law.mode_I->traction(most * critical_I) * normal / critical_I / most,
+          law.mode_II->traction(most * critical_II) * shear / critical_II / most, most >= 1.0};
+}
+
 }  // namespace
 
 void move_markers(State& state) {
-  const Grid& grid = state.grid;
-  for (std::size_t side = 0; side < 2; ++side) {
-    const VelocityField& field = grid.side[side];
-    Face& face = state.crack.face[side];
-    for (std::size_t k = 0; k < state.crack.size(); ++k) {
-      face.force_x[k] = face.force_y[k] = 0.0;
-      const double column = grid.column_of(face.x[k]), row = grid.row_of(face.y[k]);
-      face.inverse_mass[k] = 0.0;
-      if (!grid.holds(column, row)) continue;
-      const Spline sx(column), sy(row);
-      double mass = 0.0;
-      Lanes momentum{};
-      for (int j = 0; j < 3; ++j) {
-        const std::size_t node = grid.node(sx.base, sy.base + j);
-        const double w = sy.weight(j);
-        for (int i = 0; i < 3; ++i) mass += w * sx.weight(i) * field.mass[node + static_cast<std::size_t>(i)];
-        momentum += w * load(&field.momentum[2 * node]);
-      }
-      if (mass <= state.smallest_mass) continue;
-      momentum *= sx.row_weights();
-      face.inverse_mass[k] = 1.0 / mass;
-      face.velocity_x[k] = sum_x(momentum) / mass;
-      face.velocity_y[k] = sum_y(momentum) / mass;
-      face.node_column[k] = sx.base;
-      face.node_row[k] = sy.base;
-      face.offset_x[k] = sx.f;
-      face.offset_y[k] = sy.f;
-      face.x[k] += state.step * face.velocity_x[k];
-      face.y[k] += state.step * face.velocity_y[k];
-    }
-  }
+  move_face(state, state.crack.face[below], below);
+  move_face(state, state.crack.face[above], above);
+  move_face(state, state.top, above);
 }
 
 void pull_faces(State& state, const Cohesive& cohesive) {
   Crack& crack = state.crack;
   const Face &upper = crack.face[above], &lower = crack.face[below];
-  const double length = crack.spacing;
+  const double length = crack.spacing, dt = state.step;
   for (std::size_t k = 0; k < crack.size(); ++k) {
     if (upper.inverse_mass[k] == 0.0 || lower.inverse_mass[k] == 0.0) continue;
     if (!crack.intact[k]) continue;
-    const double normal = upper.y[k] - lower.y[k], shear = upper.x[k] - lower.x[k];
-    const double opening = std::max(normal, 0.0), slip = std::abs(shear);
-    const double normal_traction = traction(*cohesive.mode_I, opening, crack.largest_normal[k]);
-    const double shear_traction = std::copysign(traction(*cohesive.mode_II, slip, crack.largest_shear[k]), shear);
-    crack.largest_normal[k] = std::max(crack.largest_normal[k], opening);
-    crack.largest_shear[k] = std::max(crack.largest_shear[k], slip);
+    const double opening = std::max(upper.y[k] - lower.y[k], 0.0), shear = upper.x[k] - lower.x[k];
+    double &largest_normal = crack.largest_normal[k], &largest_shear = crack.largest_shear[k];
+    const Bond bond = cohesive.mixed_mode == MixedMode::coupled
+                          ? coupled(cohesive, opening, std::abs(shear), largest_normal, largest_shear)
+                          : decoupled(cohesive, opening, std::abs(shear), largest_normal, largest_shear);
+    const double normal_traction = bond.normal, shear_traction = std::copysign(bond.shear, shear);
+    largest_normal = std::max(largest_normal, opening);
+    largest_shear = std::max(largest_shear, std::abs(shear));
     // Trapezoid over the step: the openings moved with these very velocities.
-    const double dt = state.step;
-    state.work.mode_I +=
+    const double work_I =
         0.5 * (normal_traction + crack.traction_normal[k]) * dt * (upper.velocity_y[k] - lower.velocity_y[k]) * length;
-    state.work.mode_II +=
+    const double work_II =
         0.5 * (shear_traction + crack.traction_shear[k]) * dt * (upper.velocity_x[k] - lower.velocity_x[k]) * length;
+    state.work.mode_I += work_I;
+    state.work.mode_II += work_II;
     crack.traction_normal[k] = normal_traction;
     crack.traction_shear[k] = shear_traction;
-
-    const double share_I = cohesive.mode_I->area(crack.largest_normal[k]) / cohesive.mode_I->toughness();
-    const double share_II = cohesive.mode_II->area(crack.largest_shear[k]) / cohesive.mode_II->toughness();
-    if (std::pow(share_I, cohesive.exponent_n) + std::pow(share_II, cohesive.exponent_m) >= 1.0) {
-      crack.intact[k] = 0;
-      crack.front = std::max(crack.front, crack.reference_x[k]);
+    if (bond.fails) {
+      break_bond(state, cohesive, k);
       continue;
     }
     add_pair_force(crack, k, -shear_traction * length, -normal_traction * length);
   }
+}
+
+void break_bond(State& state, const Cohesive& cohesive, std::size_t k) {
+  Crack& crack = state.crack;
+  crack.intact[k] = 0;
+  crack.front = std::max(crack.front, crack.reference_x[k]);
+  state.work.broken_length += crack.spacing;
+  state.work.broken_energy +=
+      crack.spacing * (cohesive.mode_I->area(crack.largest_normal[k]) + cohesive.mode_II->area(crack.largest_shear[k]));
 }
 
 void close_faces(State& state, double stiffness) {
@@ -107,7 +160,7 @@ void close_faces(State& state, double stiffness) {
     const double run = lower.x[j + 1] - lower.x[j];
     const double t = (x - lower.x[j]) / run, slope = (lower.y[j + 1] - lower.y[j]) / run;
     const double gap = upper.y[k] - (lower.y[j] + t * run * slope);
-    if (gap >= 0.0 || gap < -2.0 * state.grid.cell) continue;
+    if (gap >= 0.0 || gap < -2.0 * state.grid.cell_y) continue;
     const double push = -stiffness * gap * length;
     upper.force_x[k] -= slope * push;
     upper.force_y[k] += push;
@@ -120,21 +173,9 @@ void close_faces(State& state, double stiffness) {
 }
 
 void spread_marker_forces(State& state) {
-  for (std::size_t side = 0; side < 2; ++side) {
-    VelocityField& field = state.grid.side[side];
-    const Face& face = state.crack.face[side];
-    for (std::size_t k = 0; k < state.crack.size(); ++k) {
-      if (face.inverse_mass[k] == 0.0 || (face.force_x[k] == 0.0 && face.force_y[k] == 0.0)) continue;
-      const Spline sx(face.node_column[k], face.offset_x[k]), sy(face.node_row[k], face.offset_y[k]);
-      for (int j = 0; j < 3; ++j)
-        for (int i = 0; i < 3; ++i) {
-          const std::size_t node = state.grid.node(sx.base + i, sy.base + j);
-          const double share = sx.weight(i) * sy.weight(j) * field.mass[node] * face.inverse_mass[k];
-          field.force[2 * node] += share * face.force_x[k];
-          field.force[2 * node + 1] += share * face.force_y[k];
-        }
-    }
-  }
+  spread_face(state, state.crack.face[below], below);
+  spread_face(state, state.crack.face[above], above);
+  spread_face(state, state.top, above);
 }
 
 }  // namespace kerf::forward

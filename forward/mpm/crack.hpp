@@ -14,8 +14,11 @@ void move_markers(State& state);
 
 /// Cohesive tractions between unbroken pairs. Openings are measured in the crack plane's directions; each mode follows
 /// its own law, unloading to the origin; the pair breaks, both tractions at once, when
-/// (G_I/G_Ic)^n + (G_II/G_IIc)^m = 1 (theory Eq. 8).
+/// (G_I/G_Ic)^n + (G_II/G_IIc)^m = 1 (theory Eq. 8), in the reading that the scene names (see MixedMode).
 void pull_faces(State& state, const Cohesive& cohesive);
+
+/// Takes a pair's tractions away; what its laws had used up is added to the broken energy.
+void break_bond(State& state, const Cohesive& cohesive, std::size_t k);
 
 /// The upper face cannot enter the lower one, wherever it has slid to: a penalty (`stiffness`, MPa/mm) on the gap
 /// between an upper marker and the segment of the lower face below it. Frictionless.

@@ -2,9 +2,11 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "forward/scene/scene.hpp"
+#include "forward/scene/tool_face.hpp"
 
 namespace kerf::forward {
 
@@ -19,54 +21,92 @@ struct Particles {
   std::vector<double> x, y, velocity_x, velocity_y;
   std::vector<double> stress_xx, stress_yy, stress_zz, stress_xy;  ///< Kirchhoff stress
   std::vector<double> plastic_strain, volume;
+  std::vector<double> axis_x, axis_y;         ///< direction of the grain; only for materials that have one
   std::array<std::size_t, 3> begin{0, 0, 0};  ///< side s owns [begin[s], begin[s + 1])
+  bool has_axes = false;
 
-  std::array<std::vector<double>*, 10> fields() {
-    return {&x, &y, &velocity_x, &velocity_y, &stress_xx, &stress_yy, &stress_zz, &stress_xy, &plastic_strain, &volume};
+  struct Field {
+    std::vector<double>* values;
+    const char* name;
+    double at_rest;  ///< of material that nothing has happened to
+  };
+  std::vector<Field> fields() {
+    std::vector<Field> all{{&x, "position x", 0},
+                           {&y, "position y", 0},
+                           {&velocity_x, "velocity x", 0},
+                           {&velocity_y, "velocity y", 0},
+                           {&stress_xx, "Kirchhoff stress xx", 0},
+                           {&stress_yy, "Kirchhoff stress yy", 0},
+                           {&stress_zz, "Kirchhoff stress zz", 0},
+                           {&stress_xy, "Kirchhoff stress xy", 0},
+                           {&plastic_strain, "plastic strain", 0},
+                           {&volume, "reference volume", 0}};
+    if (has_axes) {
+      all.push_back({&axis_x, "grain direction x", 1});
+      all.push_back({&axis_y, "grain direction y", 0});
+    }
+    return all;
   }
   std::size_t size() const { return x.size(); }
+  laws::StressPoint stress(std::size_t i) const {
+    laws::StressPoint point{stress_xx[i], stress_yy[i], stress_zz[i], stress_xy[i]};
+    if (has_axes) {
+      point.axis_x = axis_x[i];
+      point.axis_y = axis_y[i];
+    }
+    return point;
+  }
 };
 
 /// One side's nodes, row-major; vectors are interleaved (x, y), so that three nodes of a row lie side by side.
 struct VelocityField {
   std::vector<double> mass, momentum, velocity, next_velocity, change, force;
+  std::vector<double> filtered;  ///< what XPIC blends towards; empty without it
 };
 
-/// The regular grid that travels with the tool in whole cells. Node (i, j) stands at origin + cell (i, j).
+/// The regular grid that travels with the tool in whole cells. Node (i, j) stands at origin + (i cell_x, j cell_y);
+/// cells may be longer along the cut than they are high.
 struct Grid {
   int columns = 0, rows = 0;
-  double cell = 0, inverse_cell = 0, origin_x = 0, origin_y = 0;
+  double cell_x = 0, cell_y = 0, inverse_cell_x = 0, inverse_cell_y = 0, origin_x = 0, origin_y = 0;
   std::array<VelocityField, 2> side;
+  bool clamps_end = false;  ///< the far end is held across the crack plane too, not only along it
 
   std::size_t nodes() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
   std::size_t node(int i, int j) const {
     return static_cast<std::size_t>(j) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(i);
   }
-  double column_of(double x) const { return (x - origin_x) * inverse_cell; }
-  double row_of(double y) const { return (y - origin_y) * inverse_cell; }
+  double column_of(double x) const { return (x - origin_x) * inverse_cell_x; }
+  double row_of(double y) const { return (y - origin_y) * inverse_cell_y; }
   /// True when all nodes that a point at these grid coordinates touches exist (false for NaN).
   bool holds(double column, double row) const {
     return column >= 1.0 && row >= 1.0 && column < columns - 2.0 && row < rows - 2.0;
   }
 };
 
-/// Markers on one face of the crack; entry k faces entry k of the other side.
+/// Markers on a surface of the work, in the order of their reference position.
 struct Face {
   std::vector<double> x, y, velocity_x, velocity_y;
   std::vector<double> force_x, force_y;    ///< N/mm, on the body
   std::vector<int> node_column, node_row;  ///< first node of the mass-weighted kernel ...
   std::vector<double> offset_x, offset_y;  ///< ... and the spline offsets there
   std::vector<double> inverse_mass;        ///< 1 / sum w m; zero where the face has left the window
+  std::vector<std::vector<double>> slip;   ///< elastic part of the sliding (mm), one list per frictional contact
+  std::size_t size() const { return x.size(); }
+
+  void add(double at_x, double at_y);
+  void drop_first(std::size_t count);
+  bool is_in(const Grid& grid, std::size_t k) const {
+    return inverse_mass[k] > 0.0 && grid.holds(grid.column_of(x[k]), grid.row_of(y[k]));
+  }
 };
 
-/// Marker pairs along the crack plane in the order of their reference position.
+/// Marker pairs along the crack plane: entry k of one face is opposite entry k of the other.
 struct Crack {
   std::array<Face, 2> face;
   std::vector<double> reference_x;
   std::vector<double> largest_normal, largest_shear;  ///< openings so far, mm
   std::vector<double> traction_normal, traction_shear;
-  std::vector<double> rake_slip, edge_slip;  ///< elastic part of the sliding on the tool, mm
-  std::vector<double> rake_pressure;         ///< of this step, MPa
   std::vector<std::uint8_t> intact;
   double spacing = 0;
   double front = 0;  ///< reference position of the foremost broken pair
@@ -75,20 +115,23 @@ struct Crack {
 
 struct ToolState {
   double x = 0, y = 0, speed = 0, vertical_speed = 0;
+  double tip_radius = 0, tip_growth = 0;  ///< mm, and its change in this step
 };
 
 /// Force of the tool on the work this step, N/mm, and the deepest penetration (mm).
 struct ToolForce {
-  double rake_normal = 0, rake_tangential = 0, bottom_normal = 0, bottom_tangential = 0;
-  double slip_limit = 0;  ///< rake_tangential when every point slides
+  std::array<FaceForce, tool_face_count> face;
   double on_work_x = 0, on_work_y = 0;
   double penetration = 0;
+  double release = 0;  ///< energy release rate of a specimen in grips, N/mm
 };
 
 /// Work done since the start, N mm/mm; what cannot be read off the state is added up here.
 struct Work {
   double tool = 0, mode_I = 0, mode_II = 0, friction = 0, damping = 0;
   double retired_elastic = 0, retired_plastic = 0, retired_kinetic = 0;
+  double broken_length = 0;  ///< mm of crack path whose bonds are gone
+  double broken_energy = 0;  ///< areas under the laws that these had used up
 };
 
 /// Everything that a step reads and writes.
@@ -96,6 +139,8 @@ struct State {
   Particles particles;
   Grid grid;
   Crack crack;
+  Face top;  ///< outer surface of the layer; followed only where something may touch it
+  bool follows_top = false;
   ToolState tool;
   ToolForce force;
   Work work;
@@ -104,7 +149,7 @@ struct State {
   double density = 0;         ///< tonne/mm^3
   double smallest_mass = 0;   ///< nodes below it are empty
   double fed_to = 0;          ///< right end of the material laid so far
-  bool broken_down = false;   ///< a particle left the grid or is not a number
+  std::string breakdown;      ///< why the run cannot go on; empty while it can
 };
 
 }  // namespace kerf::forward

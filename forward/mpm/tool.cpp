@@ -4,10 +4,176 @@
 #include <cmath>
 
 namespace kerf::forward {
+namespace {
 
-void move_tool(State& state, const Cut& cut) {
-  state.tool.speed = state.time < cut.ramp ? cut.speed * state.time / cut.ramp : cut.speed;
-  state.tool.x += state.step * state.tool.speed;
+/// Sharp: the half-plane through the tip with normal (cos alpha, sin alpha). Blunt: an arc tangent to it and to the
+/// crack plane; the virtual sharp apex stays at the origin, so that the lowest point lies behind it.
+Outline rake_face(const Scene& scene, double tip_radius) {
+  const double normal_x = std::cos(scene.tool.rake), normal_y = std::sin(scene.tool.rake);
+  Outline outline;
+  outline.add_plane(0.0, 0.0, normal_x, normal_y, ToolFace::rake);
+  if (tip_radius > 0.0) {
+    const double centre_x = scene.tool.lowest_point(tip_radius);
+    outline.add_round(centre_x, tip_radius, tip_radius, ToolFace::tip);
+    outline.add_plane(centre_x, 0.0, 0.0, -1.0, ToolFace::tip);
+  }
+  return outline;
+}
+
+/// The clearance plane: behind the tip the lower face cannot rise into the tool, however strongly bonds that still hold
+/// pull it. A blunt tip is round there too, up to 60 deg ahead of its lowest point.
+Outline underside(const Scene& scene, double tip_radius) {
+  const double c = scene.tool.clearance;
+  Outline outline;
+  if (tip_radius > 0.0) {
+    const double centre_x = scene.tool.lowest_point(tip_radius);
+    constexpr double ahead_x = 0.8660254037844386, ahead_y = -0.5;
+    outline.add_plane(centre_x + tip_radius * ahead_x, tip_radius + tip_radius * ahead_y, ahead_x, ahead_y,
+                      ToolFace::tip);
+    outline.add_round(centre_x, tip_radius, tip_radius, ToolFace::tip);
+    outline.add_plane(centre_x - tip_radius * std::sin(c), tip_radius * (1.0 - std::cos(c)), -std::sin(c), -std::cos(c),
+                      ToolFace::bottom);
+  } else {
+    outline.add_plane(0.0, 0.0, -std::sin(c), -std::cos(c), ToolFace::bottom);
+    outline.end_at(0.0);
+  }
+  return outline;
+}
+
+/// A worn edge on the freshly cut face: an arc of radius R_L whose lowest point lies `press_in` below the tip of the
+/// rake plane. It runs from the clearance angle to the separation angle theta_s = arccos(1 - press_in / R_L), each end
+/// continued by its tangent.
+Outline worn_edge(const Scene& scene, double) {
+  const double radius = scene.edge_contact->edge_radius, press_in = scene.edge_contact->press_in;
+  const double separation = std::acos(1.0 - press_in / radius), c = scene.tool.clearance;
+  const double centre_x = -radius * std::sin(separation), centre_y = radius - press_in;
+  const auto tangent = [&](Outline& outline, double angle) {  // from straight down, ahead positive
+    const double normal_x = std::sin(angle), normal_y = -std::cos(angle);
+    outline.add_plane(centre_x + radius * normal_x, centre_y + radius * normal_y, normal_x, normal_y, ToolFace::bottom);
+  };
+  Outline outline;
+  tangent(outline, separation);
+  outline.add_round(centre_x, centre_y, radius, ToolFace::bottom);
+  tangent(outline, -c);
+  return outline;
+}
+
+/// A second face across the rake face, at a distance up from the tip; it ends after its land.
+Outline chip_breaker(const Scene& scene, double) {
+  const ChipBreaker& breaker = *scene.chip_breaker;
+  const double foot_x = -breaker.distance * std::sin(scene.tool.rake);
+  const double foot_y = breaker.distance * std::cos(scene.tool.rake);
+  const double normal_x = std::cos(breaker.angle), normal_y = std::sin(breaker.angle);
+  const double end_x = foot_x - breaker.land * normal_y, end_y = foot_y + breaker.land * normal_x;
+  Outline outline;
+  outline.add_plane(foot_x, foot_y, normal_x, normal_y, ToolFace::chip_breaker);
+  outline.add_round(end_x, end_y, 0.0, ToolFace::chip_breaker);
+  outline.add_plane(end_x, end_y, -normal_y, normal_x, ToolFace::chip_breaker);
+  return outline;
+}
+
+/// The plane's sole slides on the uncut surface; the mouth's front edge stands `opening` ahead of the tip.
+Outline sole(const Scene& scene, double) {
+  const Sole& sole = *scene.sole;
+  const double height = scene.cut.depth;
+  Outline outline;
+  outline.add_plane(sole.opening, height, -1.0, 0.0, ToolFace::sole);
+  outline.add_round(sole.opening + sole.corner_radius, height + sole.corner_radius, sole.corner_radius, ToolFace::sole);
+  outline.add_plane(sole.opening, height, 0.0, -1.0, ToolFace::sole);
+  return outline;
+}
+
+/// A round bar that presses the surface down ahead of the tip, as in veneer peeling.
+Outline nose_bar(const Scene& scene, double) {
+  const NoseBar& bar = *scene.nose_bar;
+  const double low = scene.cut.depth - bar.compression, centre_y = low + bar.radius;
+  Outline outline;
+  outline.add_plane(bar.lead - bar.radius, centre_y, -1.0, 0.0, ToolFace::nose_bar);
+  outline.add_round(bar.lead, centre_y, bar.radius, ToolFace::nose_bar);
+  outline.add_plane(bar.lead, low, 0.0, -1.0, ToolFace::nose_bar);
+  outline.add_round(bar.lead, centre_y, bar.radius, ToolFace::nose_bar);
+  outline.add_plane(bar.lead + bar.radius, centre_y, 1.0, 0.0, ToolFace::nose_bar);
+  return outline;
+}
+
+/// Pressure around each marker, averaged over a cell to either side.
+std::vector<double> cell_mean(const std::vector<double>& pressure, std::size_t reach) {
+  const std::size_t n = pressure.size();
+  std::vector<double> sum(n + 1, 0.0), mean(n);
+  for (std::size_t k = 0; k < n; ++k) sum[k + 1] = sum[k] + pressure[k];
+  for (std::size_t k = 0; k < n; ++k) {
+    const std::size_t from = k > reach ? k - reach : 0, to = std::min(n, k + reach + 1);
+    mean[k] = (sum[to] - sum[from]) / static_cast<double>(to - from);
+  }
+  return mean;
+}
+
+/// Velocity of a part of the tool.
+struct Motion {
+  double x, y;
+};
+
+/// A force of the tool on marker k, N/mm, with the work the moving tool does through it.
+void push(State& state, Face& face, std::size_t k, double x, double y, const Motion& motion) {
+  face.force_x[k] += x;
+  face.force_y[k] += y;
+  state.force.on_work_x += x;
+  state.force.on_work_y += y;
+  state.work.tool += (x * motion.x + y * motion.y) * state.step;
+}
+
+}  // namespace
+
+Face& surface(State& state, Surface which) {
+  if (which == Surface::top) return state.top;
+  return state.crack.face[which == Surface::upper_face ? above : below];
+}
+
+std::vector<Contact> contacts(const Scene& scene) {
+  if (scene.grips) return {};
+  const auto friction = [&](double Friction::*coefficient) {
+    return scene.friction ? (*scene.friction).*coefficient : 0.0;
+  };
+  std::vector<Contact> all;
+  all.push_back({"rake face", "the rake face presses on the upper side", Surface::upper_face, true,
+                 friction(&Friction::coefficient), 0, rake_face});
+  if (scene.chip_breaker)
+    all.push_back({"chip breaker", "the chip breaker stands in the chip's way", Surface::upper_face, true,
+                   friction(&Friction::chip_breaker), 0, chip_breaker});
+  if (scene.edge_contact)
+    all.push_back({"edge", "the worn edge presses on the lower side", Surface::lower_face, true,
+                   scene.edge_contact->friction, 0, worn_edge});
+  else
+    all.push_back(
+        {"underside", "the lower face cannot rise into the tool", Surface::lower_face, true, 0.0, 0, underside});
+  if (scene.sole)
+    all.push_back({"sole", "the sole holds down the uncut surface, its mouth's edge the chip", Surface::top, false,
+                   friction(&Friction::sole), 0, sole});
+  if (scene.nose_bar)
+    all.push_back({"nose bar", "the nose bar presses on the uncut surface", Surface::top, false,
+                   friction(&Friction::nose_bar), 0, nose_bar});
+  std::array<std::size_t, 3> lists{};
+  for (Contact& contact : all)
+    if (contact.friction > 0.0) contact.slip = lists[static_cast<std::size_t>(contact.surface)]++;
+  return all;
+}
+
+bool needs_top(const std::vector<Contact>& contacts) {
+  return std::any_of(contacts.begin(), contacts.end(), [](const Contact& c) { return c.surface == Surface::top; });
+}
+
+void move_tool(State& state, const Scene& scene) {
+  const Cut& cut = scene.cut;
+  ToolState& tool = state.tool;
+  tool.speed = state.time < cut.ramp ? cut.speed * state.time / cut.ramp : cut.speed;
+  tool.x += state.step * tool.speed;
+  if (scene.tool.tip_radius > 0.0) {
+    // Grown from the start, a round tip never begins to cut.
+    const double share = (tool.x / cut.depth - cut.notch) / scene.tool.blunting;
+    const double radius = scene.tool.tip_radius * std::clamp(share, 0.02, 1.0);
+    tool.tip_growth = radius - tool.tip_radius;
+    tool.tip_radius = radius;
+  }
   state.force = {};
   state.contact_energy = 0.0;
 }
@@ -26,93 +192,64 @@ void follow_face(State& state, double depth, double lift) {
   state.tool.y += state.step * state.tool.vertical_speed;
 }
 
-void push_face(State& state, Side side, std::size_t k, double x, double y) {
-  Face& face = state.crack.face[side];
-  face.force_x[k] += x;
-  face.force_y[k] += y;
-  state.force.on_work_x += x;
-  state.force.on_work_y += y;
-  state.work.tool += (x * state.tool.speed + y * state.tool.vertical_speed) * state.step;
-}
+void press(State& state, const Contact& contact, const Scene& scene, const PressOptions& options) {
+  Face& face = surface(state, contact.surface);
+  const ToolState& tool = state.tool;
+  const double k_n = options.stiffness, length = state.crack.spacing;
+  const double frame_y = contact.follows_tip ? tool.y : 0.0;
+  const Motion motion{tool.speed, contact.follows_tip ? tool.vertical_speed : 0.0};
+  const Outline outline = contact.outline(scene, tool.tip_radius);
+  const bool rubs = contact.friction > 0.0, blunts = tool.tip_growth != 0.0;
+  const Outline before = blunts ? contact.outline(scene, tool.tip_radius - tool.tip_growth) : outline;
 
-void block_underside(State& state, double clearance, double stiffness) {
-  const Crack& crack = state.crack;
-  const Face& face = crack.face[below];
-  const double normal_x = -std::sin(clearance), normal_y = -std::cos(clearance);  // from the tool into the base
-  const double length = crack.spacing;
-  for (std::size_t k = 0; k < crack.size(); ++k) {
-    if (face.inverse_mass[k] == 0.0 || face.x[k] > state.tool.x) continue;
-    const double distance = (face.x[k] - state.tool.x) * normal_x + (face.y[k] - state.tool.y) * normal_y;
-    if (distance >= 0.0) continue;
-    const double pressure = -stiffness * distance;
-    push_face(state, below, k, pressure * normal_x * length, pressure * normal_y * length);
-    state.contact_energy += 0.5 * pressure * -distance * length;
-    state.force.bottom_normal += pressure * length;
-    state.force.penetration = std::max(state.force.penetration, -distance);
-  }
-}
-
-namespace {
-
-/// Pressure around each marker, averaged over a cell to either side. What a single marker carries is not unique
-/// (several share the same nodes); what a cell carries is.
-std::vector<double> cell_mean(const std::vector<double>& pressure, std::size_t reach) {
-  const std::size_t n = pressure.size();
-  std::vector<double> sum(n + 1, 0.0), mean(n);
-  for (std::size_t k = 0; k < n; ++k) sum[k + 1] = sum[k] + pressure[k];
-  for (std::size_t k = 0; k < n; ++k) {
-    const std::size_t from = k > reach ? k - reach : 0, to = std::min(n, k + reach + 1);
-    mean[k] = (sum[to] - sum[from]) / static_cast<double>(to - from);
-  }
-  return mean;
-}
-
-}  // namespace
-
-void press_rake_face(State& state, double rake, double stiffness) {
-  Crack& crack = state.crack;
-  const Face& face = crack.face[above];
-  const double normal_x = std::cos(rake), normal_y = std::sin(rake);  // from the tool into the chip
-  const double length = crack.spacing;
-  crack.rake_pressure.assign(crack.size(), 0.0);
-  for (std::size_t k = 0; k < crack.size(); ++k) {
+  struct Hit {
+    std::size_t k;
+    double pressure;
+    Touch touch;
+  };
+  std::vector<Hit> hits;
+  for (std::size_t k = 0; k < face.size(); ++k) {
     if (face.inverse_mass[k] == 0.0) continue;
-    const double distance = (face.x[k] - state.tool.x) * normal_x + (face.y[k] - state.tool.y) * normal_y;
-    if (distance >= 0.0) continue;
-    const double pressure = -stiffness * distance;
-    crack.rake_pressure[k] = pressure;
-    push_face(state, above, k, pressure * length * normal_x, pressure * length * normal_y);
-    state.contact_energy += 0.5 * pressure * -distance * length;
-    state.force.rake_normal += pressure * length;
-    state.force.penetration = std::max(state.force.penetration, -distance);
-  }
-}
-
-void rub_rake_face(State& state, double rake, const Friction& friction, double shear_yield, double stiffness) {
-  Crack& crack = state.crack;
-  const Face& face = crack.face[above];
-  const double along_x = -std::sin(rake), along_y = std::cos(rake);  // up the face
-  const double length = crack.spacing;
-  const auto reach = static_cast<std::size_t>(std::lround(state.grid.cell / length));
-  const std::vector<double> mean = cell_mean(crack.rake_pressure, reach);
-  for (std::size_t k = 0; k < crack.size(); ++k) {
-    const double pressure = crack.rake_pressure[k];
-    if (pressure == 0.0) {
-      crack.rake_slip[k] = 0.0;
+    const double x = face.x[k] - tool.x, y = face.y[k] - frame_y;
+    const Touch touch = outline.touch(x, y);
+    if (touch.distance >= 0.0) {
+      if (rubs) face.slip[contact.slip][k] = 0.0;
       continue;
     }
-    const double ratio = std::min(friction.coefficient, friction.yield_cap * shear_yield / mean[k]);
-    const double reach_of_spring = ratio * pressure / stiffness;
-    const double sliding = state.step * ((face.velocity_x[k] - state.tool.speed) * along_x +
-                                         (face.velocity_y[k] - state.tool.vertical_speed) * along_y);
-    const double trial = crack.rake_slip[k] + sliding;
-    crack.rake_slip[k] = std::clamp(trial, -reach_of_spring, reach_of_spring);
-    const double shear = -stiffness * crack.rake_slip[k];  // on the chip, up the face
-    push_face(state, above, k, shear * length * along_x, shear * length * along_y);
-    state.work.friction -= shear * (trial - crack.rake_slip[k]) * length;
-    state.contact_energy += 0.5 * stiffness * crack.rake_slip[k] * crack.rake_slip[k] * length;
-    state.force.rake_tangential -= shear * length;
-    state.force.slip_limit += ratio * pressure * length;
+    const double pressure = -k_n * touch.distance;
+    hits.push_back({k, pressure, touch});
+    push(state, face, k, pressure * length * touch.normal_x, pressure * length * touch.normal_y, motion);
+    if (blunts)  // a surface that gives way takes work out of the spring
+      state.work.tool += pressure * length * (before.touch(x, y).distance - touch.distance);
+    state.contact_energy += 0.5 * pressure * -touch.distance * length;
+    FaceForce& force = state.force.face[static_cast<std::size_t>(touch.face)];
+    force.normal += pressure * length;
+    force.contact_length += length;
+    state.force.penetration = std::max(state.force.penetration, -touch.distance);
+  }
+  if (!rubs || hits.empty()) return;
+
+  std::vector<double> pressure(face.size(), 0.0);
+  for (const Hit& hit : hits) pressure[hit.k] = hit.pressure;
+  const auto reach = static_cast<std::size_t>(std::lround(state.grid.cell_x / length));
+  const std::vector<double> mean = cell_mean(pressure, reach);
+  const double way = contact.surface == Surface::upper_face ? 1.0 : -1.0;  // the way the work slides past the tool
+  for (const Hit& hit : hits) {
+    double& slip = face.slip[contact.slip][hit.k];
+    const double along_x = -way * hit.touch.normal_y, along_y = way * hit.touch.normal_x;
+    const double ratio = std::min(contact.friction, options.shear_cap / mean[hit.k]);
+    const double longest = ratio * hit.pressure / k_n;
+    const double sliding =
+        state.step * ((face.velocity_x[hit.k] - motion.x) * along_x + (face.velocity_y[hit.k] - motion.y) * along_y);
+    const double trial = slip + sliding;
+    slip = std::clamp(trial, -longest, longest);
+    const double shear = -k_n * slip;  // on the work
+    push(state, face, hit.k, shear * length * along_x, shear * length * along_y, motion);
+    state.work.friction -= shear * (trial - slip) * length;
+    state.contact_energy += 0.5 * k_n * slip * slip * length;
+    FaceForce& force = state.force.face[static_cast<std::size_t>(hit.touch.face)];
+    force.tangential -= shear * length;
+    force.slip_limit += ratio * hit.pressure * length;
   }
 }
 

@@ -1,15 +1,37 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
+#include "forward/mpm/outline.hpp"
 #include "forward/mpm/state.hpp"
 
 namespace kerf::forward {
 
-/// The tool is rigid and analytic; it touches the crack-face markers, never particles or nodes, so its normals are
-/// exact and contact begins where the face is. A penalty acts on the penetration phi < 0: normal traction -k phi; along
-/// the face a spring of the same stiffness follows the sliding up to the slip limit.
+/// Surfaces of the work that a tool may touch.
+enum class Surface { lower_face, upper_face, top };
+Face& surface(State& state, Surface which);
 
-/// Advances the tip with the velocity ramp and clears this step's tool force.
-void move_tool(State& state, const Cut& cut);
+/// One rigid convex part of the tool against one surface of the work.
+struct Contact {
+  std::string name, does;
+  Surface surface;
+  bool follows_tip;      ///< moves up and down with the tip; the sole does not
+  double friction;       ///< Coulomb coefficient mu; 0 has no springs along the face
+  std::size_t slip = 0;  ///< which of the surface's slip lists belongs to it
+  /// The part in coordinates of the tip (of the point under it in the crack plane, if it does not follow the tip).
+  Outline (*outline)(const Scene& scene, double tip_radius);
+};
+
+/// The contacts of a scene's tool, in the order in which they act.
+std::vector<Contact> contacts(const Scene& scene);
+
+/// Gives every surface that something touches with friction its lists of slips, and says whether the outer surface of
+/// the layer has to be followed.
+bool needs_top(const std::vector<Contact>& contacts);
+
+/// Advances the tip with the velocity ramp, lets its radius grow, and clears this step's tool force.
+void move_tool(State& state, const Scene& scene);
 
 /// The base lifts as the layer is pulled off it, by a few per cent of h. Held at the machine's height, an edge would
 /// squeeze that lift back down through a patch of a cell, and the force would measure the mesh. So the tip follows the
@@ -18,18 +40,15 @@ void move_tool(State& state, const Cut& cut);
 /// and the work of that vertical motion is booked.
 void follow_face(State& state, double depth, double lift);
 
-/// A force of the tool on marker k of a face, N/mm, with the work the moving tool does through it.
-void push_face(State& state, Side side, std::size_t k, double x, double y);
-
-/// Rake face against the upper side: the half-plane through the tip with normal (cos alpha, sin alpha).
-void press_rake_face(State& state, double rake, double stiffness);
-
-/// The clearance plane through the tip: behind the tip the lower face cannot rise into the tool, however strongly bonds
-/// that still hold pull it. Frictionless; a free face does not reach it.
-void block_underside(State& state, double clearance, double stiffness);
-
-/// Friction on the pressures just found: tau = min(mu p, cap sigma_y / sqrt 3), the dissipation booked. The cap looks
-/// at the pressure of a cell, not of a marker.
-void rub_rake_face(State& state, double rake, const Friction& friction, double shear_yield, double stiffness);
+/// The tool is rigid and analytic; it touches markers on the surfaces of the work, never particles or nodes, so its
+/// normals are exact and contact begins where the surface is. A penalty acts on the distance phi < 0: normal traction
+/// -k phi; along the face a spring of the same stiffness follows the sliding up to the slip limit
+/// tau = min(mu p, cap), the dissipation booked. The cap looks at the pressure of a cell, not of a marker: what a
+/// single marker carries is not unique (several share the same nodes).
+struct PressOptions {
+  double stiffness;  ///< k, MPa/mm
+  double shear_cap;  ///< MPa
+};
+void press(State& state, const Contact& contact, const Scene& scene, const PressOptions& options);
 
 }  // namespace kerf::forward

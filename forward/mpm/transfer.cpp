@@ -26,14 +26,15 @@ void add_momentum(VelocityField& field, const Grid& grid, const Spline& sx, cons
   }
 }
 
-/// Bottom row and everything below it does not move; the far end of the window holds its horizontal position.
+/// Bottom row and everything below it does not move; the far end of the window holds its horizontal position, and the
+/// vertical one where it is clamped. `hold` is told whether both components are held.
 template <class Hold>
 void hold_boundary(const Grid& grid, Hold&& hold) {
   constexpr int fixed_rows = 2, fixed_columns = 4;
   for (int j = 0; j < fixed_rows; ++j)
     for (int i = 0; i < grid.columns; ++i) hold(grid.node(i, j), true);
   for (int j = 0; j < grid.rows; ++j)
-    for (int i = grid.columns - fixed_columns; i < grid.columns; ++i) hold(grid.node(i, j), false);
+    for (int i = grid.columns - fixed_columns; i < grid.columns; ++i) hold(grid.node(i, j), grid.clamps_end);
 }
 
 }  // namespace
@@ -60,18 +61,21 @@ void project_velocity(State& state) {
       field.velocity[2 * node] = field.momentum[2 * node] * inverse;
       field.velocity[2 * node + 1] = field.momentum[2 * node + 1] * inverse;
     }
-    hold_boundary(state.grid, [&](std::size_t node, bool bottom) {
+    hold_boundary(state.grid, [&](std::size_t node, bool both) {
       field.velocity[2 * node] = 0.0;
-      if (bottom) field.velocity[2 * node + 1] = 0.0;
+      if (both) field.velocity[2 * node + 1] = 0.0;
     });
   }
 }
 
-void update_stress(State& state, const laws::J2& material) {
+namespace {
+
+template <class Law>
+void stress_particles(State& state, const Law& material) {
   Particles& p = state.particles;
   const Grid& grid = state.grid;
-  const double slope_scale = 1.0 / grid.cell;
-  const double strain_scale = state.step * slope_scale;
+  const double strain_x = state.step * grid.inverse_cell_x, strain_y = state.step * grid.inverse_cell_y;
+  bool mapped = true;
   for (std::size_t side = 0; side < 2; ++side) {
     VelocityField& field = state.grid.side[side];
     for (std::size_t first = p.begin[side]; first < p.begin[side + 1]; first += lane_count) {
@@ -87,24 +91,33 @@ void update_stress(State& state, const laws::J2& material) {
           rise += sy.slope(j) * v;
         }
         const Lanes along_x = sx.row_slopes() * value, along_y = sx.row_weights() * rise;
-        xx[lane] = strain_scale * sum_x(along_x);
-        yx[lane] = strain_scale * sum_y(along_x);
-        xy[lane] = strain_scale * sum_x(along_y);
-        yy[lane] = strain_scale * sum_y(along_y);
+        xx[lane] = strain_x * sum_x(along_x);
+        yx[lane] = strain_x * sum_y(along_x);
+        xy[lane] = strain_y * sum_x(along_y);
+        yy[lane] = strain_y * sum_y(along_y);
         column[lane] = sx.base;
         row[lane] = sy.base;
         fx[lane] = sx.f;
         fy[lane] = sy.f;
       }
-      material.update(lane_count, {xx, xy, yx, yy},
-                      {&p.stress_xx[first], &p.stress_yy[first], &p.stress_zz[first], &p.stress_xy[first],
-                       &p.plastic_strain[first]});
+      laws::MaterialPoints points{&p.stress_xx[first],
+                                  &p.stress_yy[first],
+                                  &p.stress_zz[first],
+                                  &p.stress_xy[first],
+                                  &p.plastic_strain[first],
+                                  nullptr,
+                                  nullptr};
+      if constexpr (Law::has_axes) {
+        points.axis_x = &p.axis_x[first];
+        points.axis_y = &p.axis_y[first];
+      }
+      mapped &= material.update(lane_count, {xx, xy, yx, yy}, points);
       for (std::size_t lane = 0; lane < lane_count; ++lane) {
         const std::size_t i = first + lane;
         const Spline sx(column[lane], fx[lane]), sy(row[lane], fy[lane]);
-        const double scale = -p.volume[i] * slope_scale;
-        const Lanes by_slope = sx.row_slopes() * pairs(scale * p.stress_xx[i], scale * p.stress_xy[i]);
-        const Lanes by_weight = sx.row_weights() * pairs(scale * p.stress_xy[i], scale * p.stress_yy[i]);
+        const double along = -p.volume[i] * grid.inverse_cell_x, across = -p.volume[i] * grid.inverse_cell_y;
+        const Lanes by_slope = sx.row_slopes() * pairs(along * p.stress_xx[i], along * p.stress_xy[i]);
+        const Lanes by_weight = sx.row_weights() * pairs(across * p.stress_xy[i], across * p.stress_yy[i]);
         for (int j = 0; j < 3; ++j) {
           double* to = &field.force[2 * grid.node(sx.base, sy.base + j)];
           store(to, load(to) + sy.weight(j) * by_slope + sy.slope(j) * by_weight);
@@ -112,6 +125,13 @@ void update_stress(State& state, const laws::J2& material) {
       }
     }
   }
+  if (!mapped && state.breakdown.empty()) state.breakdown = "the return mapping of the material found no solution";
+}
+
+}  // namespace
+
+void update_stress(State& state, const laws::Material& material) {
+  std::visit([&](const auto& law) { stress_particles(state, law); }, material);
 }
 
 void accelerate(State& state) {
@@ -125,9 +145,9 @@ void accelerate(State& state) {
         field.next_velocity[k] = field.velocity[k] + field.change[k];
       }
     }
-    hold_boundary(state.grid, [&](std::size_t node, bool bottom) {
+    hold_boundary(state.grid, [&](std::size_t node, bool both) {
       const double inverse = field.mass[node] > state.smallest_mass ? 1.0 / field.mass[node] : 0.0;
-      for (std::size_t k = 2 * node; k < 2 * node + (bottom ? 2 : 1); ++k) {
+      for (std::size_t k = 2 * node; k < 2 * node + (both ? 2 : 1); ++k) {
         field.next_velocity[k] = 0.0;
         field.change[k] = -field.momentum[k] * inverse;
       }
@@ -139,8 +159,10 @@ void accelerate(State& state) {
 
 namespace {
 
-template <bool damped>
-void advance_all(State& state, double pic) {
+enum class Blend { none, pic, xpic };
+
+template <Blend blend>
+void advance_all(State& state, double rate) {
   Particles& p = state.particles;
   const Grid& grid = state.grid;
   const double dt = state.step;
@@ -149,11 +171,12 @@ void advance_all(State& state, double pic) {
     VelocityField& field = state.grid.side[side];
     for (std::size_t i = p.begin[side]; i < p.begin[side + 1]; ++i) {
       const Spline sx(grid.column_of(p.x[i])), sy(grid.row_of(p.y[i]));
-      Lanes next{}, change{};
+      Lanes next{}, change{}, target{};
       for (int j = 0; j < 3; ++j) {
         const std::size_t node = 2 * grid.node(sx.base, sy.base + j);
         next += sy.weight(j) * load(&field.next_velocity[node]);
         change += sy.weight(j) * load(&field.change[node]);
+        if constexpr (blend == Blend::xpic) target += sy.weight(j) * load(&field.filtered[node]);
       }
       const Lanes weights = sx.row_weights();
       next *= weights;
@@ -161,10 +184,16 @@ void advance_all(State& state, double pic) {
       const double move_x = sum_x(next), move_y = sum_y(next);
       const double mass = p.volume[i] * state.density;
       double vx = p.velocity_x[i] + sum_x(change), vy = p.velocity_y[i] + sum_y(change);
-      if constexpr (damped) {
+      if constexpr (blend != Blend::none) {
+        double target_x = move_x, target_y = move_y;
+        if constexpr (blend == Blend::xpic) {
+          target *= weights;
+          target_x = sum_x(target);
+          target_y = sum_y(target);
+        }
         const double flip_x = vx, flip_y = vy;
-        vx += pic * (move_x - vx);
-        vy += pic * (move_y - vy);
+        vx += rate * (target_x - vx);
+        vy += rate * (target_y - vy);
         lost += 0.5 * mass * (flip_x * flip_x + flip_y * flip_y - vx * vx - vy * vy);
       }
       p.velocity_x[i] = vx;
@@ -173,7 +202,7 @@ void advance_all(State& state, double pic) {
       p.y[i] += dt * move_y;
       const double column = grid.column_of(p.x[i]), row = grid.row_of(p.y[i]);
       if (!grid.holds(column, row)) [[unlikely]] {
-        state.broken_down = true;
+        state.breakdown = "a particle left the grid or its position is not a number";
         return;
       }
       add_momentum(field, grid, Spline(column), Spline(row), mass, vx, vy);
@@ -185,7 +214,11 @@ void advance_all(State& state, double pic) {
 }  // namespace
 
 void advance(State& state, double pic) {
-  pic > 0.0 ? advance_all<true>(state, pic) : advance_all<false>(state, 0.0);
+  pic > 0.0 ? advance_all<Blend::pic>(state, pic) : advance_all<Blend::none>(state, 0.0);
+}
+
+void advance_filtered(State& state, double rate) {
+  advance_all<Blend::xpic>(state, rate);
 }
 
 }  // namespace kerf::forward

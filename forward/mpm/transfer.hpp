@@ -13,7 +13,7 @@ void project_velocity(State& state);
 
 /// Update stress first: velocity gradients from the projected velocity, the material law, then the internal force
 /// f_i = -sum_p V tau grad w_ip, in one pass over the particles.
-void update_stress(State& state, const laws::J2& material);
+void update_stress(State& state, const laws::Material& material);
 
 /// New grid velocities v + dt f/m and their change, under the fixed boundary.
 void accelerate(State& state);
@@ -21,5 +21,8 @@ void accelerate(State& state);
 /// Moves the particles (FLIP; blended with a share `pic` of PIC, whose loss is booked as damping) and gathers their
 /// momentum for the next step in the same pass.
 void advance(State& state, double pic);
+
+/// The same, blended towards the filtered velocity (see effects/xpic.hpp).
+void advance_filtered(State& state, double rate);
 
 }  // namespace kerf::forward

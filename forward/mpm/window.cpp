@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "forward/mpm/tool.hpp"
 #include "forward/mpm/transfer.hpp"
 
 namespace kerf::forward {
@@ -12,59 +13,47 @@ namespace {
 constexpr int margin = 4;  // cells around the window that stay free for the kernel
 
 void push(Particles& p, double x, double y, double volume) {
-  for (std::vector<double>* field : p.fields()) field->push_back(0.0);
+  for (const Particles::Field& field : p.fields()) field.values->push_back(field.at_rest);
   p.x.back() = x;
   p.y.back() = y;
   p.volume.back() = volume;
 }
 
-struct Point {
-  double x, y;
-};
-
 /// A marker pair at reference position `at` of the crack plane; its upper marker may lie elsewhere.
-void add_pair(Crack& crack, double at, Point upper, bool intact) {
+void add_pair(Crack& crack, double at, double upper_x, double upper_y, bool intact) {
   crack.reference_x.push_back(at);
   crack.intact.push_back(intact);
   if (!intact) crack.front = std::max(crack.front, at);
-  for (auto* values : {&crack.largest_normal, &crack.largest_shear, &crack.traction_normal, &crack.traction_shear,
-                       &crack.rake_slip, &crack.edge_slip})
+  for (auto* values : {&crack.largest_normal, &crack.largest_shear, &crack.traction_normal, &crack.traction_shear})
     values->push_back(0.0);
-  for (const Side side : {below, above}) {
-    Face& face = crack.face[side];
-    face.x.push_back(side == above ? upper.x : at);
-    face.y.push_back(side == above ? upper.y : 0.0);
-    for (auto* values : {&face.velocity_x, &face.velocity_y, &face.force_x, &face.force_y, &face.offset_x,
-                         &face.offset_y, &face.inverse_mass})
-      values->push_back(0.0);
-    face.node_column.push_back(0);
-    face.node_row.push_back(0);
-  }
+  crack.face[below].add(at, 0.0);
+  crack.face[above].add(upper_x, upper_y);
 }
 
 /// The tool meets the layer's end first: the upper face goes on around it, down the end to the corner at the origin.
 /// These markers continue the crack plane outside the block, where nothing is opposite.
 void wrap_end(State& state, const Scene& scene) {
   const double spacing = state.crack.spacing;
-  const int count = scene.resolution.cells_through_chip * scene.resolution.markers_per_cell;
-  for (int i = count - 1; i >= 0; --i) add_pair(state.crack, -spacing * (i + 0.5), {0.0, spacing * (i + 0.5)}, false);
+  const int count = std::max(1, static_cast<int>(std::lround(scene.cut.depth / spacing)));
+  const double along_end = scene.cut.depth / count;
+  for (int i = count - 1; i >= 0; --i) add_pair(state.crack, -spacing * (i + 0.5), 0.0, along_end * (i + 0.5), false);
 }
 
 /// One column of cells at rest, from x on, both sides of the plane. Particles are appended unsorted.
 void feed_column(State& state, const Scene& scene, double x) {
-  const double cell = state.grid.cell;
-  const int per_side = scene.resolution.particles_per_cell_side;
-  const double gap = cell / per_side;
-  const int down = per_side * static_cast<int>(std::lround(scene.window.below * scene.resolution.cells_through_chip));
-  const int up = per_side * scene.resolution.cells_through_chip;
+  const int up_cell = scene.resolution.particles_per_cell_side, along_cell = scene.particles_along_cell();
+  const double gap_x = state.grid.cell_x / along_cell, gap_y = state.grid.cell_y / up_cell;
+  const int down = up_cell * static_cast<int>(std::lround(scene.base_height() * scene.resolution.cells_through_chip));
+  const int up = up_cell * scene.resolution.cells_through_chip;
   for (int j = -down; j < up; ++j)
-    for (int i = 0; i < per_side; ++i) push(state.particles, x + gap * (i + 0.5), gap * (j + 0.5), gap * gap);
+    for (int i = 0; i < along_cell; ++i) push(state.particles, x + gap_x * (i + 0.5), gap_y * (j + 0.5), gap_x * gap_y);
 
   for (int i = 0; i < scene.resolution.markers_per_cell; ++i) {
     const double at = x + state.crack.spacing * (i + 0.5);
-    add_pair(state.crack, at, {at, 0.0}, at > scene.cut.notch * scene.cut.depth);
+    add_pair(state.crack, at, at, 0.0, at > scene.cut.notch * scene.cut.depth);
+    if (state.follows_top) state.top.add(at, scene.cut.depth);
   }
-  state.fed_to = x + cell;
+  state.fed_to = x + state.grid.cell_x;
 }
 
 template <class T>
@@ -72,33 +61,34 @@ void erase_front(std::vector<T>& values, std::size_t count) {
   values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count));
 }
 
-/// Drops the leading pairs of which neither face is in the window any more.
-void retire_markers(Crack& crack, const Grid& grid) {
+/// Drops the leading markers that are not in the window any more; of a pair, when neither is.
+void retire_markers(State& state) {
+  Crack& crack = state.crack;
   std::size_t gone = 0;
-  const auto inside = [&](const Face& face, std::size_t k) {
-    return grid.holds(grid.column_of(face.x[k]), grid.row_of(face.y[k])) && face.inverse_mass[k] > 0.0;
-  };
-  while (gone < crack.size() && !inside(crack.face[below], gone) && !inside(crack.face[above], gone)) ++gone;
-  if (gone == 0) return;
-  for (auto* values : {&crack.reference_x, &crack.largest_normal, &crack.largest_shear, &crack.traction_normal,
-                       &crack.traction_shear, &crack.rake_slip, &crack.edge_slip})
-    erase_front(*values, gone);
-  erase_front(crack.intact, gone);
-  for (Face& face : crack.face) {
-    for (auto* values : {&face.x, &face.y, &face.velocity_x, &face.velocity_y, &face.force_x, &face.force_y,
-                         &face.offset_x, &face.offset_y, &face.inverse_mass})
+  while (gone < crack.size() && !crack.face[below].is_in(state.grid, gone) &&
+         !crack.face[above].is_in(state.grid, gone))
+    ++gone;
+  if (gone > 0) {
+    for (auto* values : {&crack.reference_x, &crack.largest_normal, &crack.largest_shear, &crack.traction_normal,
+                         &crack.traction_shear})
       erase_front(*values, gone);
-    erase_front(face.node_column, gone);
-    erase_front(face.node_row, gone);
+    erase_front(crack.intact, gone);
+    for (Face& face : crack.face) face.drop_first(gone);
   }
+  gone = 0;
+  while (gone < state.top.size() && !state.top.is_in(state.grid, gone)) ++gone;
+  if (gone > 0) state.top.drop_first(gone);
 }
 
-void book_retired(State& state, const laws::J2& material, std::size_t i) {
+void book_retired(State& state, const laws::Material& material, std::size_t i) {
   const Particles& p = state.particles;
   const double volume = p.volume[i];
-  state.work.retired_elastic +=
-      volume * material.elastic_energy(p.stress_xx[i], p.stress_yy[i], p.stress_zz[i], p.stress_xy[i]);
-  state.work.retired_plastic += volume * material.plastic_work(p.plastic_strain[i]);
+  std::visit(
+      [&](const auto& law) {
+        state.work.retired_elastic += volume * law.elastic_energy(p.stress(i));
+        state.work.retired_plastic += volume * law.plastic_work(p.plastic_strain[i]);
+      },
+      material);
   state.work.retired_kinetic +=
       0.5 * volume * state.density * (p.velocity_x[i] * p.velocity_x[i] + p.velocity_y[i] * p.velocity_y[i]);
 }
@@ -108,7 +98,7 @@ void book_retired(State& state, const laws::J2& material, std::size_t i) {
 void sort_into_batches(State& state, const Scene& scene, const std::vector<Side>& side_of) {
   Particles& p = state.particles;
   const Grid& grid = state.grid;
-  const double left = grid.origin_x + margin * grid.cell;
+  const double left = grid.origin_x + margin * grid.cell_x;
   const double top = scene.window.above * scene.cut.depth;
   const std::size_t cells = grid.nodes();
   std::vector<std::size_t> bin(p.size());
@@ -138,18 +128,18 @@ void sort_into_batches(State& state, const Scene& scene, const std::vector<Side>
     const std::size_t place = start[bin[i]]++;
     source[bin[i] >= cells ? place + shift_above : place] = i;
   }
-  for (std::vector<double>* field : p.fields()) {
-    std::vector<double> sorted(p.begin[2], 0.0);
+  for (const Particles::Field& field : p.fields()) {
+    std::vector<double> sorted(p.begin[2], field.at_rest);
     for (std::size_t i = 0; i < sorted.size(); ++i)
-      if (source[i] != nowhere) sorted[i] = (*field)[source[i]];
-    *field = std::move(sorted);
+      if (source[i] != nowhere) sorted[i] = (*field.values)[source[i]];
+    *field.values = std::move(sorted);
   }
   // Padding rides along with the last real particle of its side, without volume.
   for (std::size_t side = 0; side < 2; ++side)
     for (std::size_t i = p.begin[side] + 1; i < p.begin[side + 1]; ++i)
       if (source[i] == nowhere)
-        for (std::vector<double>* field : p.fields())
-          if (field != &p.volume) (*field)[i] = (*field)[i - 1];
+        for (const Particles::Field& field : p.fields())
+          if (field.values != &p.volume) (*field.values)[i] = (*field.values)[i - 1];
 }
 
 std::vector<Side> sides(const Particles& p) {
@@ -159,21 +149,48 @@ std::vector<Side> sides(const Particles& p) {
   return side;
 }
 
+/// The stable time step: an elastic wave's transit of a cell, along and across, in the directions that the grain has
+/// now.
+double stable_step(const State& state, const Scene& scene) {
+  const Particles& p = state.particles;
+  const Grid& grid = state.grid;
+  const double per_second = std::visit(
+      [&](const auto& law) {
+        const auto transits = [&](double cos, double sin) {
+          return std::max((law.wave_speed(cos, sin) + scene.cut.speed) * grid.inverse_cell_x,
+                          (law.wave_speed(-sin, cos) + scene.cut.speed) * grid.inverse_cell_y);
+        };
+        double most = transits(1.0, 0.0);
+        if constexpr (std::decay_t<decltype(law)>::has_axes)
+          for (std::size_t i = p.begin[above]; i < p.begin[above + 1]; ++i)
+            most = std::max(most, transits(p.axis_x[i], -p.axis_y[i]));
+        return most;
+      },
+      scene.material);
+  return scene.resolution.courant_number / per_second;
+}
+
 }  // namespace
 
 State lay_out(const Scene& scene) {
   State state;
   Grid& grid = state.grid;
   const int through = scene.resolution.cells_through_chip;
-  const auto cells = [&](double depths) { return static_cast<int>(std::lround(depths * through)); };
-  grid.cell = scene.cell();
-  grid.inverse_cell = 1.0 / grid.cell;
-  grid.columns = cells(scene.window.behind) + cells(scene.window.ahead) + 2 * margin;
-  grid.rows = cells(scene.window.below) + cells(scene.window.above) + 2 * margin;
-  grid.origin_x = -(cells(scene.window.behind) + margin) * grid.cell;
+  const auto cells_up = [&](double depths) { return static_cast<int>(std::lround(depths * through)); };
+  const auto cells_along = [&](double depths) {
+    return static_cast<int>(std::lround(depths * through / scene.resolution.cell_stretch));
+  };
+  grid.cell_x = scene.cell_length();
+  grid.cell_y = scene.cell();
+  grid.clamps_end = scene.grips.has_value();
+  grid.inverse_cell_x = 1.0 / grid.cell_x;
+  grid.inverse_cell_y = 1.0 / grid.cell_y;
+  grid.columns = cells_along(scene.window.behind) + cells_along(scene.window.ahead) + 2 * margin;
+  grid.rows = cells_up(scene.window.below) + cells_up(scene.window.above) + 2 * margin;
+  grid.origin_x = -(cells_along(scene.window.behind) + margin) * grid.cell_x;
   // Two node rows below the block's lower end hold it. The crack plane lies midway between two rows: with a row in the
   // plane the faces' nodes get half a cell of material each, and the forces converge three times more slowly.
-  grid.origin_y = -(cells(scene.window.below) + 1.5) * grid.cell;
+  grid.origin_y = -(cells_up(scene.window.below) + 1.5) * grid.cell_y;
   const std::size_t nodes = grid.nodes();
   constexpr std::size_t overread = lane_count;  // a row of three nodes is read as eight numbers
   for (VelocityField& field : grid.side) {
@@ -181,24 +198,30 @@ State lay_out(const Scene& scene) {
     for (auto* values : {&field.momentum, &field.velocity, &field.next_velocity, &field.change, &field.force})
       values->assign(2 * nodes + overread, 0.0);
   }
-  state.density = scene.material.density;
-  const double gap = grid.cell / scene.resolution.particles_per_cell_side;
-  state.smallest_mass = 1e-12 * state.density * gap * gap;
-  state.step = scene.resolution.courant_number * grid.cell / (scene.material.wave_speed() + scene.cut.speed);
-  state.crack.spacing = grid.cell / scene.resolution.markers_per_cell;
-  wrap_end(state, scene);
-  for (int i = 0; i < cells(scene.window.ahead); ++i) feed_column(state, scene, i * grid.cell);
+  state.density = laws::density(scene.material);
+  state.particles.has_axes = laws::has_axes(scene.material);
+  state.smallest_mass = 1e-12 * state.density * grid.cell_x * grid.cell_y /
+                        (scene.particles_along_cell() * scene.resolution.particles_per_cell_side);
+  state.crack.spacing = scene.marker_spacing();
+  const std::vector<Contact> touching = contacts(scene);
+  state.follows_top = needs_top(touching);
+  for (const Contact& contact : touching)
+    if (contact.friction > 0.0) surface(state, contact.surface).slip.emplace_back();
+  if (!scene.grips) wrap_end(state, scene);
+  for (int i = 0; i < cells_along(scene.window.ahead); ++i) feed_column(state, scene, i * grid.cell_x);
   sort_into_batches(state, scene, sides(state.particles));
+  state.step = stable_step(state, scene);
   gather_momentum(state);
   return state;
 }
 
 void shift_window(State& state, const Scene& scene) {
-  state.grid.origin_x += state.grid.cell;
+  state.grid.origin_x += state.grid.cell_x;
   feed_column(state, scene, state.fed_to);
   sort_into_batches(state, scene, sides(state.particles));
+  if (state.particles.has_axes) state.step = stable_step(state, scene);
   gather_momentum(state);
-  retire_markers(state.crack, state.grid);
+  retire_markers(state);
 }
 
 }  // namespace kerf::forward

@@ -12,6 +12,23 @@ namespace {
 // verification polymer: half the force at 0.24 cells per critical opening).
 constexpr double smallest_opening = 0.35;
 
+/// The energy release rate is read twice, at the grips and at the notch: a specimen that was pulled slowly enough has
+/// one value.
+template <class Refuse>
+void judge_specimen(const CutResult& result, Refuse&& refuse) {
+  double difference = 0.0, sum = 0.0;
+  for (const ForceSample& sample : result.history) {
+    const Extension& e = sample.extension;
+    difference += std::abs(e.release - e.at_notch_I - e.at_notch_II);
+    sum += e.release;
+  }
+  if (!(difference < 0.05 * sum))
+    refuse(
+        fmt::format("the energy release rates at the grips and at the notch differ by {:.1f} % in the mean (allowed "
+                    "5 %): the specimen was pulled too fast, yielded, or is too coarse",
+                    100 * difference / sum));
+}
+
 }  // namespace
 
 void judge(CutResult& result, const Scene& scene) {
@@ -30,6 +47,11 @@ void judge(CutResult& result, const Scene& scene) {
     refuse(
         fmt::format("the energy ledger does not close: {:.1f} % of the tool's work is unexplained (allowed -1 ... 3 %)",
                     100 * residue));
+  if (result.is_specimen) {
+    judge_specimen(result, refuse);
+    result.accepted = result.refusals.empty();
+    return;
+  }
   if (!(result.fracture_energy_ratio > 0.92 && result.fracture_energy_ratio < 1.05))
     refuse(fmt::format(
         "fracture energy per new area is {:.3f} of the law's (allowed 0.92 ... 1.05): the material beside the "

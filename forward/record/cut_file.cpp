@@ -66,7 +66,7 @@ class QuietErrors {
 
 /// A column of numbers with its unit: `rows` entries of `components` each, row by row.
 struct Field {
-  const char* name;
+  std::string name;
   const char* unit;
   hsize_t components;
   std::vector<double> values;
@@ -104,16 +104,15 @@ struct Column {
   double Owner::*value;
 };
 
-constexpr std::array<Column<ForceSample>, 9> history_columns{
+constexpr std::array<Column<ForceSample>, 8> history_columns{
     {{"travel", "mm", &ForceSample::travel},
      {"F_c", "N/mm", &ForceSample::F_c},
      {"F_t", "N/mm", &ForceSample::F_t},
-     {"rake_normal", "N/mm", &ForceSample::rake_normal},
-     {"rake_tangential", "N/mm", &ForceSample::rake_tangential},
-     {"bottom_normal", "N/mm", &ForceSample::bottom_normal},
-     {"bottom_tangential", "N/mm", &ForceSample::bottom_tangential},
      {"crack_lead", "mm", &ForceSample::crack_lead},
-     {"penetration", "mm", &ForceSample::penetration}}};
+     {"penetration", "mm", &ForceSample::penetration},
+     {"fracture_I", "N mm/mm", &ForceSample::fracture_I},
+     {"broken_length", "mm", &ForceSample::broken_length},
+     {"broken_energy", "N mm/mm", &ForceSample::broken_energy}}};
 
 constexpr const char* energy_unit = "N mm/mm";
 constexpr std::array<Column<Ledger>, 7> ledger_columns{{{"tool_work", energy_unit, &Ledger::tool_work},
@@ -131,12 +130,35 @@ std::vector<double> over_history(const std::vector<ForceSample>& history, Value 
   return column;
 }
 
-std::vector<Field> history_fields(const std::vector<ForceSample>& history) {
+std::vector<Field> history_fields(const std::vector<ForceSample>& history, const std::vector<ToolFace>& faces) {
   std::vector<Field> fields;
-  fields.reserve(std::size(history_columns));
   for (const auto& column : history_columns)
     fields.push_back({column.name, column.unit, 1,
                       over_history(history, [&](const ForceSample& sample) { return sample.*column.value; })});
+  for (const ToolFace face : faces) {
+    const auto add = [&](const char* what, const char* unit, double FaceForce::*value) {
+      fields.push_back({std::string(name(face)) + what, unit, 1, over_history(history, [&](const ForceSample& sample) {
+                          return sample.face[static_cast<std::size_t>(face)].*value;
+                        })});
+    };
+    add("_normal", "N/mm", &FaceForce::normal);
+    add("_tangential", "N/mm", &FaceForce::tangential);
+    add("_contact_length", "mm", &FaceForce::contact_length);
+  }
+  return fields;
+}
+
+std::vector<Field> extension_fields(const std::vector<ForceSample>& history) {
+  std::vector<Field> fields;
+  const auto add = [&](const char* name, const char* unit, double Extension::*value) {
+    fields.push_back(
+        {name, unit, 1, over_history(history, [&](const ForceSample& sample) { return sample.extension.*value; })});
+  };
+  add("opening", "mm", &Extension::opening);
+  add("extension", "mm", &Extension::crack);
+  add("G_R", "N/mm", &Extension::release);
+  add("notch_I", "N/mm", &Extension::at_notch_I);
+  add("notch_II", "N/mm", &Extension::at_notch_II);
   return fields;
 }
 
@@ -152,12 +174,24 @@ std::vector<Field> ledger_fields(const std::vector<ForceSample>& history) {
 }
 
 std::vector<Field> tool_fields(const Scene& scene, const Snapshot& snapshot) {
-  return {{"tip_x", "mm", 1, {snapshot.tool_tip_x}},
-          {"tip_y", "mm", 1, {snapshot.tool_tip_y}},
-          {"rake", "rad", 1, {scene.tool.rake}},
-          {"depth", "mm", 1, {scene.cut.depth}},
-          {"cell", "mm", 1, {snapshot.cell}},
-          {"particle_spacing", "mm", 1, {scene.cell() / scene.resolution.particles_per_cell_side}}};
+  std::vector<Field> fields{{"tip_x", "mm", 1, {snapshot.tool_tip_x}},
+                            {"tip_y", "mm", 1, {snapshot.tool_tip_y}},
+                            {"tip_radius", "mm", 1, {snapshot.tip_radius}},
+                            {"rake", "rad", 1, {scene.tool.rake}},
+                            {"clearance", "rad", 1, {scene.tool.clearance}},
+                            {"depth", "mm", 1, {scene.cut.depth}},
+                            {"cell", "mm", 1, {snapshot.cell}},
+                            {"particle_spacing", "mm", 1, {scene.cell() / scene.resolution.particles_per_cell_side}}};
+  if (scene.chip_breaker) {
+    fields.push_back({"breaker_distance", "mm", 1, {scene.chip_breaker->distance}});
+    fields.push_back({"breaker_angle", "rad", 1, {scene.chip_breaker->angle}});
+    fields.push_back({"breaker_land", "mm", 1, {scene.chip_breaker->land}});
+  }
+  if (scene.sole) {
+    fields.push_back({"mouth", "mm", 1, {scene.sole->opening}});
+    fields.push_back({"mouth_radius", "mm", 1, {scene.sole->corner_radius}});
+  }
+  return fields;
 }
 
 void write_text_attribute(hid_t owner, const char* name, const std::string& text) {
@@ -175,8 +209,9 @@ void write_group(hid_t parent, const char* name, const std::vector<Field>& field
   for (const Field& field : fields) {
     const std::array<hsize_t, 2> extent{field.rows(), field.components};
     const Handle space(H5Screate_simple(field.components > 1 ? 2 : 1, extent.data(), nullptr), H5Sclose, "data space");
-    const Handle set(H5Dcreate2(group, field.name, H5T_IEEE_F64LE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
-                     H5Dclose, "dataset");
+    const Handle set(
+        H5Dcreate2(group, field.name.c_str(), H5T_IEEE_F64LE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose,
+        "dataset");
     if (!field.values.empty())
       check(H5Dwrite(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, field.values.data()), "dataset");
     write_text_attribute(set, "unit", field.unit);
@@ -189,8 +224,9 @@ void write_h5(const fs::path& file, const Document& document, const Scene& scene
   write_text_attribute(h5, "code_version", KERF_VERSION);
   write_text_attribute(h5, "scene", document.canonical());
   write_text_attribute(h5, "result", result_json(result).dump(2));
-  write_group(h5, "history", history_fields(result.history));
+  write_group(h5, "history", history_fields(result.history, faces_of(scene)));
   write_group(h5, "history/ledger", ledger_fields(result.history));
+  if (result.is_specimen) write_group(h5, "r_curve", extension_fields(result.history));
   write_group(h5, "particles", particle_fields(result.snapshot));
   write_group(h5, "faces", face_fields(result.snapshot));
   write_group(h5, "tool", tool_fields(scene, result.snapshot));

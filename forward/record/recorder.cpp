@@ -6,7 +6,7 @@
 
 namespace kerf::forward {
 
-Ledger take_stock(const State& state, const laws::J2& material) {
+Ledger take_stock(const State& state, const laws::Material& material) {
   const Particles& p = state.particles;
   const Work& work = state.work;
   Ledger ledger{.tool_work = work.tool,
@@ -16,13 +16,17 @@ Ledger take_stock(const State& state, const laws::J2& material) {
                 .kinetic = work.retired_kinetic,
                 .friction = work.friction,
                 .damping = work.damping};
-  for (std::size_t i = 0; i < p.size(); ++i) {
-    const double volume = p.volume[i];
-    ledger.elastic += volume * material.elastic_energy(p.stress_xx[i], p.stress_yy[i], p.stress_zz[i], p.stress_xy[i]);
-    ledger.plastic += volume * material.plastic_work(p.plastic_strain[i]);
+  std::visit(
+      [&](const auto& law) {
+        for (std::size_t i = 0; i < p.size(); ++i) {
+          ledger.elastic += p.volume[i] * law.elastic_energy(p.stress(i));
+          ledger.plastic += p.volume[i] * law.plastic_work(p.plastic_strain[i]);
+        }
+      },
+      material);
+  for (std::size_t i = 0; i < p.size(); ++i)
     ledger.kinetic +=
-        0.5 * volume * state.density * (p.velocity_x[i] * p.velocity_x[i] + p.velocity_y[i] * p.velocity_y[i]);
-  }
+        0.5 * p.volume[i] * state.density * (p.velocity_x[i] * p.velocity_x[i] + p.velocity_y[i] * p.velocity_y[i]);
   return ledger;
 }
 
@@ -50,32 +54,63 @@ ChipShape measure_chip(const State& state, double depth) {
   return {area / ((high - low) * depth), 2.0 * line[2] / std::pow(std::hypot(1.0, line[1]), 3) / depth};
 }
 
+Extension measure_extension(const State& state, const Scene& scene, double release) {
+  const Crack& crack = state.crack;
+  const Cohesive& law = scene.cohesive;
+  const double notch = scene.cut.notch * scene.cut.depth;
+  Extension extension{.opening = state.tool.x, .release = release};
+  bool at_notch = true;
+  for (std::size_t k = 0; k < crack.size(); ++k) {
+    if (crack.reference_x[k] <= notch) continue;
+    if (at_notch) {
+      extension.at_notch_I = law.mode_I->area(crack.largest_normal[k]);
+      extension.at_notch_II = law.mode_II->area(crack.largest_shear[k]);
+      at_notch = false;
+    }
+    if (law.mode_I->slope(crack.largest_normal[k]) < 0.0 || law.mode_II->slope(crack.largest_shear[k]) < 0.0 ||
+        !crack.intact[k])
+      extension.crack = crack.reference_x[k] - notch;
+  }
+  return extension;
+}
+
 void Recorder::add_step(const State& state) {
-  sum_.rake_normal += state.force.rake_normal;
-  sum_.rake_tangential += state.force.rake_tangential;
-  sum_.slip_limit += state.force.slip_limit;
-  sum_.bottom_normal += state.force.bottom_normal;
-  sum_.bottom_tangential += state.force.bottom_tangential;
+  for (std::size_t f = 0; f < tool_face_count; ++f) {
+    const FaceForce& now = state.force.face[f];
+    FaceForce& sum = sum_.face[f];
+    sum.normal += now.normal;
+    sum.tangential += now.tangential;
+    sum.slip_limit += now.slip_limit;
+    sum.contact_length += now.contact_length;
+  }
   sum_.on_work_x += state.force.on_work_x;
   sum_.on_work_y += state.force.on_work_y;
+  sum_.release += state.force.release;
   sum_.penetration = std::max(sum_.penetration, state.force.penetration);
   steps_ += 1.0;
 }
 
 void Recorder::add_crossing(const State& state, const Scene& scene) {
-  history_.push_back({.travel = state.tool.x,
-                      .rake_normal = sum_.rake_normal / steps_,
-                      .rake_tangential = sum_.rake_tangential / steps_,
-                      .slip_limit = sum_.slip_limit / steps_,
-                      .bottom_normal = sum_.bottom_normal / steps_,
-                      .bottom_tangential = sum_.bottom_tangential / steps_,
-                      .F_c = sum_.on_work_x / steps_,
-                      .F_t = -sum_.on_work_y / steps_,
-                      .crack_lead = state.crack.front - state.tool.x,
-                      .fracture_I = state.work.mode_I,
-                      .penetration = sum_.penetration,
-                      .ledger = take_stock(state, scene.material)});
-  chip_.push_back(measure_chip(state, scene.cut.depth));
+  ForceSample sample{.travel = state.tool.x,
+                     .face = sum_.face,
+                     .F_c = sum_.on_work_x / steps_,
+                     .F_t = -sum_.on_work_y / steps_,
+                     .crack_lead = state.crack.front - state.tool.x,
+                     .extension = {},
+                     .fracture_I = state.work.mode_I,
+                     .broken_length = state.work.broken_length,
+                     .broken_energy = state.work.broken_energy,
+                     .penetration = sum_.penetration,
+                     .ledger = take_stock(state, scene.material)};
+  for (FaceForce& face : sample.face) {
+    face.normal /= steps_;
+    face.tangential /= steps_;
+    face.slip_limit /= steps_;
+    face.contact_length /= steps_;
+  }
+  if (scene.grips) sample.extension = measure_extension(state, scene, sum_.release / steps_);
+  history_.push_back(sample);
+  if (!scene.grips) chip_.push_back(measure_chip(state, scene.cut.depth));
   sum_ = {};
   steps_ = 0.0;
 }

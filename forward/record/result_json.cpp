@@ -49,6 +49,35 @@ Json cost_of(const Cost& cost) {
           {"particle_steps_per_s", finite_or_null(static_cast<double>(cost.particle_steps) / cost.wall_seconds)}};
 }
 
+/// Resistance against crack extension, and the same read at the notch, split by mode.
+Json r_curve(const std::vector<ForceSample>& history) {
+  const double one = consistent_units_in("J/m^2");
+  Json opening = Json::array(), extension = Json::array(), resistance = Json::array(), pull = Json::array(),
+       notch_I = Json::array(), notch_II = Json::array();
+  for (const ForceSample& sample : history) {
+    const Extension& e = sample.extension;
+    opening.push_back(e.opening);
+    pull.push_back(finite_or_null(sample.F_c / consistent_units_in("N/m")));
+    extension.push_back(e.crack);
+    resistance.push_back(finite_or_null(e.release / one));
+    notch_I.push_back(finite_or_null(e.at_notch_I / one));
+    notch_II.push_back(finite_or_null(e.at_notch_II / one));
+  }
+  return {{"opening", opening},
+          {"pull", pull},
+          {"extension", extension},
+          {"G_R", resistance},
+          {"notch_I", notch_I},
+          {"notch_II", notch_II},
+          {"units",
+           {{"opening", "mm"},
+            {"pull", "N/m"},
+            {"extension", "mm"},
+            {"G_R", "J/m^2"},
+            {"notch_I", "J/m^2"},
+            {"notch_II", "J/m^2"}}}};
+}
+
 }  // namespace
 
 Json result_json(const CutResult& result) {
@@ -64,13 +93,19 @@ Json result_json(const CutResult& result) {
   json["crack_lead_se"] = finite_or_null(result.crack_lead.standard_error);
   json["process_zone"] = finite_or_null(result.process_zone);
   json["mode_I_fraction"] = finite_or_null(result.mode_I_fraction);
+  json["fracture_energy"] = {{"value", finite_or_null(result.fracture_energy / consistent_units_in("J/m^2"))},
+                             {"unit", "J/m^2"}};
   json["fracture_energy_ratio"] = finite_or_null(result.fracture_energy_ratio);
   json["chip_ratio"] = in_unit(result.chip_ratio, "1");
   json["curl_radius"] = curl_radius(result.chip_curvature);
-  json["faces"] = {{"rake_normal", in_unit(result.rake_normal, "N/m")},
-                   {"rake_tangential", in_unit(result.rake_tangential, "N/m")},
-                   {"bottom_normal", in_unit(result.bottom_normal, "N/m")},
-                   {"bottom_tangential", in_unit(result.bottom_tangential, "N/m")}};
+  json["faces"] = Json::object();
+  for (const FaceResult& face : result.faces) {
+    const std::string face_name = name(face.face);
+    json["faces"][face_name + "_normal"] = in_unit(face.normal, "N/m");
+    json["faces"][face_name + "_tangential"] = in_unit(face.tangential, "N/m");
+    json["faces"][face_name + "_contact_length"] = in_unit(face.contact_length, "mm");
+  }
+  if (result.is_specimen) json["r_curve"] = r_curve(result.history);
   json["ledger"] = energies(result.ledger);
   json["deepest_penetration"] = finite_or_null(result.deepest_penetration);
   json["cost"] = cost_of(result.cost);

@@ -20,7 +20,7 @@ std::vector<double> series(const Samples& samples, Member member) {
 std::size_t earliest(const Scene& scene) {
   const double ramp_travel = 0.5 * scene.cut.speed * scene.cut.ramp;
   const double travel = ramp_travel + (0.5 + scene.cut.notch) * scene.cut.depth;
-  return static_cast<std::size_t>(std::ceil(travel / scene.cell()));
+  return static_cast<std::size_t>(std::ceil(travel / scene.cell_length()));
 }
 
 struct SteadyPart {
@@ -31,7 +31,7 @@ struct SteadyPart {
 /// Two depths at least, whose halves agree to 1 %, or, where friction makes the force wander, to twice the scatter of
 /// their difference but never worse than 3 %.
 bool is_steady(std::span<const double> force, const Scene& scene) {
-  if (force.size() < 2 * static_cast<std::size_t>(scene.resolution.cells_through_chip)) return false;
+  if (static_cast<double>(force.size()) * scene.cell_length() < 1.999 * scene.cut.depth) return false;
   const Estimate first = batch_mean(force.first(force.size() / 2)), second = batch_mean(force.last(force.size() / 2));
   const double mean = std::abs(batch_mean(force).value);
   const double scatter = 2.0 * std::hypot(first.standard_error, second.standard_error);
@@ -53,19 +53,6 @@ SteadyPart steady_part(const std::vector<double>& force, const Scene& scene) {
   for (const std::size_t start : {from, truncated, middle})
     if (is_steady(whole.subspan(start), scene)) return {start, true};
   return {from, false};
-}
-
-/// G_c of the mixed-mode criterion at a mode I share: (s G/G_Ic)^n + ((1 - s) G/G_IIc)^m = 1, by bisection.
-double mixed_toughness(const Cohesive& cohesive, double share) {
-  const double G_I = cohesive.mode_I->toughness(), G_II = cohesive.mode_II->toughness();
-  double low = 0.0, high = 2.0 * std::max(G_I, G_II);
-  for (int i = 0; i < 100; ++i) {
-    const double G = 0.5 * (low + high);
-    const double sum =
-        std::pow(share * G / G_I, cohesive.exponent_n) + std::pow((1.0 - share) * G / G_II, cohesive.exponent_m);
-    (sum < 1.0 ? low : high) = G;
-  }
-  return 0.5 * (low + high);
 }
 
 /// Length of the process zone at this instant.
@@ -111,7 +98,8 @@ Snapshot picture(const State& state) {
   }
   shot.tool_tip_x = state.tool.x;
   shot.tool_tip_y = state.tool.y;
-  shot.cell = state.grid.cell;
+  shot.tip_radius = state.tool.tip_radius;
+  shot.cell = state.grid.cell_y;
   return shot;
 }
 
@@ -132,6 +120,12 @@ void summarise(CutResult& result, const Recorder& recorder, const State& state, 
   result.snapshot = picture(state);
   if (history.empty()) return;
   result.ledger = history.back().ledger;
+  if (scene.grips) {
+    result.is_specimen = true;
+    result.process_zone = process_zone(state.crack, scene.cohesive);
+    result.mode_I_fraction = history.back().fracture_I / result.ledger.fracture;
+    return;
+  }
 
   const SteadyPart part = steady_part(series(history, &ForceSample::F_c), scene);
   result.steady = part.steady;
@@ -143,12 +137,17 @@ void summarise(CutResult& result, const Recorder& recorder, const State& state, 
   };
   result.F_c = mean(&ForceSample::F_c);
   result.F_t = mean(&ForceSample::F_t);
-  result.rake_normal = mean(&ForceSample::rake_normal);
-  result.rake_tangential = mean(&ForceSample::rake_tangential);
-  if (scene.friction && scene.friction->coefficient > 0.0)
-    result.sliding_share = result.rake_tangential.value / mean(&ForceSample::slip_limit).value;
-  result.bottom_normal = mean(&ForceSample::bottom_normal);
-  result.bottom_tangential = mean(&ForceSample::bottom_tangential);
+  for (const ToolFace face : faces_of(scene)) {
+    const auto of_face = [&](double FaceForce::*member) {
+      std::vector<double> values;
+      for (const ForceSample& sample : history) values.push_back(sample.face[static_cast<std::size_t>(face)].*member);
+      return batch_mean(std::span(values).subspan(from));
+    };
+    result.faces.push_back(
+        {face, of_face(&FaceForce::normal), of_face(&FaceForce::tangential), of_face(&FaceForce::contact_length)});
+    if (face == ToolFace::rake && scene.friction && scene.friction->coefficient > 0.0)
+      result.sliding_share = result.faces.back().tangential.value / of_face(&FaceForce::slip_limit).value;
+  }
   result.crack_lead = mean(&ForceSample::crack_lead);
   result.deepest_penetration = mean(&ForceSample::penetration).value / scene.cell();
   // The chip reaches the place where it is measured later than the force settles: it has a start of its own.
@@ -169,10 +168,12 @@ void summarise(CutResult& result, const Recorder& recorder, const State& state, 
 
   const double mode_I = history.back().fracture_I - history[from].fracture_I;
   const double fracture = history.back().ledger.fracture - history[from].ledger.fracture;
-  const double area = history.back().travel - history[from].travel;
+  const double travel = history.back().travel - history[from].travel;
+  const double broken_length = history.back().broken_length - history[from].broken_length;
+  const double broken_energy = history.back().broken_energy - history[from].broken_energy;
   result.mode_I_fraction = mode_I / fracture;
-  result.fracture_energy_ratio =
-      fracture / area / mixed_toughness(scene.cohesive, std::clamp(result.mode_I_fraction, 0.0, 1.0));
+  result.fracture_energy = fracture / travel;
+  result.fracture_energy_ratio = broken_length > 0.0 ? (fracture / travel) / (broken_energy / broken_length) : 0.0;
 }
 
 const char* name(Branch branch) {

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "models/base/error.hpp"
 
 namespace kerf::forward {
@@ -14,14 +17,19 @@ std::vector<Block> declare() {
        .meaning = "the scene itself",
        .parameters = {text("title", "what this scene shows")},
        .required = true},
-      laws::J2::block(),
       {.path = "cohesive",
        .variant = "",
        .meaning = "how the modes act together: failure at (G_I/G_Ic)^n + (G_II/G_IIc)^m = 1",
        .parameters = {number("exponent_n", "1", 0.1, 10, "n, of the mode I term").or_else("1"),
-                      number("exponent_m", "1", 0.1, 10, "m, of the mode II term").or_else("1")},
+                      number("exponent_m", "1", 0.1, 10, "m, of the mode II term").or_else("1"),
+                      text("mixed_mode",
+                           "G_I and G_II of the criterion: areas under the laws, the dissipated part of them, or both "
+                           "laws coupled at one share of their critical openings (no criterion)",
+                           {"areas", "dissipated", "coupled"})
+                          .or_else("areas")},
        .required = true},
   };
+  for (const Block& law : laws::material_blocks()) blocks.push_back(law);
   for (const char* mode : {"cohesive.mode_I", "cohesive.mode_II"})
     for (const laws::TractionLawKind& law : laws::traction_laws())
       blocks.push_back(
@@ -34,22 +42,69 @@ std::vector<Block> declare() {
                       number("speed", "m/s", 1e-3, 1e3, "tool speed; rate-independent laws only feel its inertia"),
                       number("ramp", "ms", 0.0, 1e3, "time in which the tool reaches its speed").or_else("0 ms"),
                       number("notch", "1", 0.1, 20, "length separated beforehand, in depths of cut").or_else("1"),
-                      number("travel", "1", 1.0, 1e3, "longest tool travel, in depths of cut")},
+                      number("travel", "1", 0.01, 1e3,
+                             "longest tool travel, or opening of a specimen, in depths of cut")},
        .required = true},
       {.path = "tool",
        .variant = "",
-       .meaning = "a rigid, sharp tool; its tip runs in the crack plane",
-       .parameters = {number("rake", "deg", -30, 75, "rake angle alpha, from the normal of the crack plane"),
-                      number("clearance", "deg", 0.5, 45, "clearance angle, between clearance face and crack plane")
-                          .or_else("12 deg")},
-       .required = true},
+       .meaning = "a rigid tool whose tip runs in the crack plane; a scene has it or [grips]",
+       .parameters =
+           {number("rake", "deg", -30, 75, "rake angle alpha, from the normal of the crack plane"),
+            number("clearance", "deg", 0.5, 60,
+                   "clearance angle, between clearance face and crack plane; 12 deg when neither it nor bevel is given")
+                .if_given(),
+            number("bevel", "deg", 5, 85, "grinding angle of the tool, 90 deg - rake - clearance; instead of clearance")
+                .if_given(),
+            number("tip_radius", "mm", 0, 10, "radius of a tip that is round on both sides; 0 is sharp")
+                .or_else("0 mm"),
+            number("blunting", "1", 0.5, 100,
+                   "tool travel over which the tip grows round after the notch, in depths of cut; begun blunt, a tool "
+                   "never starts to cut")
+                .or_else("5")}},
+      {.path = "grips",
+       .variant = "",
+       .meaning = "a cracked specimen pulled apart at its end instead of a cut; cut.notch is its crack, cut.travel the "
+                  "opening of a grip, window.ahead its length, all in depths",
+       .parameters = {text("arms", "pull both arms (double cantilever beam) or the upper one, the far end clamped",
+                           {"both", "upper"}),
+                      number("lower_arm", "1", 0.2, 50, "height of the lower arm, in depths of cut").or_else("1"),
+                      number("position", "1", 0.1, 10, "of the grips from the end, in depths of cut").or_else("0.5"),
+                      number("width", "1", 0.01, 5, "of a grip along the arm, in depths of cut").or_else("0.25"),
+                      number("gauge", "1", 0.05, 5, "length over which an arm's rotation is read, in depths of cut")
+                          .or_else("0.5")}},
+      {.path = "chip_breaker",
+       .variant = "",
+       .meaning = "a second iron on the rake face that turns the chip",
+       .parameters = {number("distance", "mm", 1e-4, 1e2, "b, from the tip up along the rake face"),
+                      number("angle", "deg", -80, 60, "of its face from the crack plane's normal, like a rake angle"),
+                      number("land", "mm", 1e-4, 1e2, "length of its face").or_else("2 mm")}},
+      {.path = "sole",
+       .variant = "",
+       .meaning = "the sole of a plane on the uncut surface; give opening or opening_in_depths",
+       .parameters =
+           {number("opening", "mm", 1e-3, 1e3, "mouth m, from the tip to its front edge along the cut").if_given(),
+            number("opening_in_depths", "1", 0.2, 100, "mouth in depths of cut, m/d").if_given(),
+            number("corner_radius", "mm", 1e-4, 1e2, "radius of the mouth's front edge").or_else("0.05 mm")}},
+      {.path = "nose_bar",
+       .variant = "",
+       .meaning = "a round bar that presses on the uncut surface ahead of the tool",
+       .parameters = {number("lead", "mm", 1e-3, 1e3, "of its lowest point ahead of the tip"),
+                      number("radius", "mm", 1e-3, 1e3, "radius of the bar"),
+                      number("compression", "mm", 0, 1e2, "how far it lies below the uncut surface").or_else("0 mm")}},
       {.path = "friction",
        .variant = "",
-       .meaning = "Coulomb friction on the rake face; leave the block out for a frictionless tool",
-       .parameters = {number("coefficient", "1", 0.0, 2.0, "coefficient of friction mu"),
-                      number("yield_cap", "1", 0.1, 1.0,
-                             "the shear traction never exceeds this share of the shear yield stress")
-                          .or_else("0.9")}},
+       .meaning = "Coulomb friction on the tool; leave the block out for a frictionless tool",
+       .parameters =
+           {number("coefficient", "1", 0.0, 2.0, "coefficient of friction mu of the rake face and the tip"),
+            number("yield_cap", "1", 0.1, 1.0, "the shear traction never exceeds this share of the shear yield stress")
+                .or_else("0.9"),
+            number("chip_breaker", "1", 0.0, 2.0, "mu of the chip breaker; absent: the coefficient").if_given(),
+            number("sole", "1", 0.0, 2.0, "mu of the sole; absent: the coefficient").if_given(),
+            number("nose_bar", "1", 0.0, 2.0, "mu of the nose bar; absent: the coefficient").if_given()}},
+      {.path = "bridging",
+       .variant = "",
+       .meaning = "what the tool does to the bonds that still hold where its edge arrives; absent: it ignores them",
+       .parameters = {text("tool", "whether the edge cuts them or leaves them alone", {"cuts", "ignores"})}},
       {.path = "edge_contact",
        .variant = "",
        .meaning =
@@ -62,6 +117,19 @@ std::vector<Block> declare() {
        .variant = "",
        .meaning = "FLIP velocities blended towards PIC; damps where velocity gradients are high",
        .parameters = {number("rate", "1", 0.0, 1.0, "damping per transit of an elastic wave through a cell")}},
+      {.path = "xpic_damping",
+       .variant = "",
+       .meaning = "FLIP velocities blended towards XPIC of an order m: damps only what the grid cannot resolve",
+       .parameters = {number("rate", "1", 0.0, 1.0, "damping per transit of an elastic wave through a cell"),
+                      number("order", "1", 2, 10, "m; 1 would be PIC damping").or_else("2")}},
+      {.path = "thermostat",
+       .variant = "",
+       .meaning = "feedback damping that holds the kinetic energy near a share of the elastic energy",
+       .parameters = {number("kinetic_share", "1", 1e-6, 1.0, "wanted kinetic energy over elastic energy"),
+                      number("gain", "1", 1e-6, 1.0,
+                             "damping per transit of an elastic wave through a cell when the energy is twice the "
+                             "wanted one")
+                          .or_else("0.01")}},
       {.path = "window",
        .variant = "",
        .meaning =
@@ -75,12 +143,15 @@ std::vector<Block> declare() {
       {.path = "resolution",
        .variant = "",
        .meaning = "the price of accuracy",
-       .parameters = {number("cells_through_chip", "1", 2, 64, "grid cells across the depth of cut").or_else("8"),
-                      number("particles_per_cell_side", "1", 1, 4, "particles along each side of a cell").or_else("2"),
-                      number("markers_per_cell", "1", 1, 32, "crack-face markers along a cell").or_else("8"),
-                      number("courant_number", "1", 0.01, 0.9,
-                             "time step in transits of an elastic wave through a cell")
-                          .or_else("0.6")},
+       .parameters =
+           {number("cells_through_chip", "1", 2, 64, "grid cells across the depth of cut").or_else("8"),
+            number("particles_per_cell_side", "1", 1, 4, "particles along each side of a cell").or_else("2"),
+            number("markers_per_cell", "1", 1, 32, "crack-face markers along a cell").or_else("8"),
+            number("courant_number", "1", 0.01, 0.9, "time step in transits of an elastic wave through a cell")
+                .or_else("0.6"),
+            number("cell_stretch", "1", 1, 8,
+                   "length of a cell along the cut over its height; for chips that are stiff along the grain")
+                .or_else("1")},
        .required = true},
       {.path = "steady_state",
        .variant = "",
@@ -102,11 +173,61 @@ int whole_number(const Values& values, std::string_view key) {
   return static_cast<int>(value);
 }
 
+MixedMode mixed_mode(const std::string& name) {
+  if (name == "dissipated") return MixedMode::dissipated;
+  return name == "coupled" ? MixedMode::coupled : MixedMode::areas;
+}
+
 Cohesive read_cohesive(const Contents& contents) {
   return {.mode_I = laws::make_traction_law(contents.at("cohesive.mode_I")),
           .mode_II = laws::make_traction_law(contents.at("cohesive.mode_II")),
           .exponent_n = contents.at("cohesive").number("exponent_n"),
-          .exponent_m = contents.at("cohesive").number("exponent_m")};
+          .exponent_m = contents.at("cohesive").number("exponent_m"),
+          .mixed_mode = mixed_mode(contents.at("cohesive").text("mixed_mode"))};
+}
+
+Tool read_tool(const Values& tool, double cell) {
+  constexpr double degree = std::numbers::pi / 180.0;
+  Tool result{.rake = tool.number("rake"),
+              .clearance = 12.0 * degree,
+              .tip_radius = tool.number("tip_radius"),
+              .blunting = tool.number("blunting")};
+  if (tool.has("clearance")) result.clearance = tool.number("clearance");
+  if (tool.has("bevel")) {
+    if (tool.has("clearance"))
+      throw InputError(fmt::format("{}: [tool] has bevel and clearance; one follows from the other, so give one",
+                                   tool.where("bevel")));
+    result.clearance = 0.5 * std::numbers::pi - result.rake - tool.number("bevel");
+    if (result.clearance < 0.5 * degree)
+      throw InputError(fmt::format(
+          "{}: bevel = {:.4g} deg with a rake of {:.4g} deg leaves a clearance of {:.3g} deg "
+          "(allowed from 0.5 deg)",
+          tool.where("bevel"), tool.number("bevel") / degree, result.rake / degree, result.clearance / degree));
+  }
+  if (result.tip_radius > 0.0 && result.tip_radius < cell)
+    throw InputError(
+        fmt::format("{}: tip_radius = {:.4g} mm is less than a cell of {:.4g} mm, which cannot see it; "
+                    "take 0 mm for a sharp tip, or more cells_through_chip",
+                    tool.where("tip_radius"), result.tip_radius, cell));
+  return result;
+}
+
+Sole read_sole(const Values& sole, double depth) {
+  const bool absolute = sole.has("opening"), relative = sole.has("opening_in_depths");
+  if (absolute == relative)
+    throw InputError(
+        fmt::format("{}: [sole] needs opening or opening_in_depths, and only one of them", sole.where("opening")));
+  return {.opening = absolute ? sole.number("opening") : sole.number("opening_in_depths") * depth,
+          .corner_radius = sole.number("corner_radius")};
+}
+
+Friction read_friction(const Values& friction) {
+  const auto own = [&](const char* face) { return friction.number(friction.has(face) ? face : "coefficient"); };
+  return {.coefficient = friction.number("coefficient"),
+          .yield_cap = friction.number("yield_cap"),
+          .chip_breaker = own("chip_breaker"),
+          .sole = own("sole"),
+          .nose_bar = own("nose_bar")};
 }
 
 Cut read_cut(const Values& cut) {
@@ -129,36 +250,85 @@ Scene read_scene(const Document& document) {
   const Values& window = contents.at("window");
   const Values& resolution = contents.at("resolution");
   const Values& steady = contents.at("steady_state");
-  Scene scene{
-      .title = contents.at("").text("title"),
-      .material = laws::J2::from(contents.at("material")),
-      .cohesive = read_cohesive(contents),
-      .cut = read_cut(contents.at("cut")),
-      .tool = {.rake = contents.at("tool").number("rake"), .clearance = contents.at("tool").number("clearance")},
-      .friction = {},
-      .edge_contact = {},
-      .pic_damping = {},
-      .window = {.ahead = window.number("ahead"),
-                 .behind = window.number("behind"),
-                 .below = window.number("below"),
-                 .above = window.number("above")},
-      .resolution = {.cells_through_chip = whole_number(resolution, "cells_through_chip"),
-                     .particles_per_cell_side = whole_number(resolution, "particles_per_cell_side"),
-                     .markers_per_cell = whole_number(resolution, "markers_per_cell"),
-                     .courant_number = resolution.number("courant_number")},
-      .steady_state = {.tolerance = steady.number("tolerance"), .not_before = steady.number("not_before")}};
-  if (contents.has("friction")) {
-    const Values& friction = contents.at("friction");
-    scene.friction = {.coefficient = friction.number("coefficient"), .yield_cap = friction.number("yield_cap")};
+  const Cut cut = read_cut(contents.at("cut"));
+  Scene scene{.title = contents.at("").text("title"),
+              .material = laws::make_material(contents.at("material")),
+              .cohesive = read_cohesive(contents),
+              .cut = cut,
+              .tool = {},
+              .friction = {},
+              .edge_contact = {},
+              .chip_breaker = {},
+              .sole = {},
+              .nose_bar = {},
+              .bridging = {},
+              .grips = {},
+              .pic_damping = {},
+              .xpic_damping = {},
+              .thermostat = {},
+              .window = {.ahead = window.number("ahead"),
+                         .behind = window.number("behind"),
+                         .below = window.number("below"),
+                         .above = window.number("above")},
+              .resolution = {.cells_through_chip = whole_number(resolution, "cells_through_chip"),
+                             .particles_per_cell_side = whole_number(resolution, "particles_per_cell_side"),
+                             .markers_per_cell = whole_number(resolution, "markers_per_cell"),
+                             .courant_number = resolution.number("courant_number"),
+                             .cell_stretch = resolution.number("cell_stretch")},
+              .steady_state = {.tolerance = steady.number("tolerance"), .not_before = steady.number("not_before")}};
+  const auto block = [&](const char* path) { return contents.has(path) ? &contents.at(path) : nullptr; };
+  const Values* grips = block("grips");
+  if (const Values* tool = block("tool")) {
+    if (grips) throw InputError(fmt::format("{}: a specimen in [grips] has no [tool]", tool->where("rake")));
+    scene.tool = read_tool(*tool, scene.cell());
+  } else if (!grips) {
+    throw InputError(fmt::format("{}: a cut needs the table [tool] (or a specimen the table [grips])",
+                                 contents.at("").where("title")));
   }
-  if (contents.has("edge_contact")) {
-    const Values& edge = contents.at("edge_contact");
-    scene.edge_contact = {.press_in = edge.number("press_in") * scene.cut.depth,
-                          .edge_radius = edge.number("edge_radius") * scene.cut.depth,
-                          .friction = edge.number("coefficient")};
-  }
-  if (contents.has("pic_damping")) scene.pic_damping = {.rate = contents.at("pic_damping").number("rate")};
+  if (grips)
+    scene.grips = {.both_arms = grips->text("arms") == "both",
+                   .position = grips->number("position") * cut.depth,
+                   .width = grips->number("width") * cut.depth,
+                   .gauge = grips->number("gauge") * cut.depth,
+                   .lower_arm = grips->number("lower_arm") * cut.depth};
+  if (const Values* friction = block("friction")) scene.friction = read_friction(*friction);
+  if (const Values* edge = block("edge_contact"))
+    scene.edge_contact = {.press_in = edge->number("press_in") * cut.depth,
+                          .edge_radius = edge->number("edge_radius") * cut.depth,
+                          .friction = edge->number("coefficient")};
+  if (scene.edge_contact && scene.tool.tip_radius > 0.0)
+    throw InputError(
+        fmt::format("{}: [edge_contact] wears the lower side of a tip that tip_radius has rounded already; "
+                    "keep one of them",
+                    contents.at("edge_contact").where("press_in")));
+  if (const Values* breaker = block("chip_breaker"))
+    scene.chip_breaker = {
+        .distance = breaker->number("distance"), .angle = breaker->number("angle"), .land = breaker->number("land")};
+  if (const Values* sole = block("sole")) scene.sole = read_sole(*sole, cut.depth);
+  if (const Values* bar = block("nose_bar"))
+    scene.nose_bar = {
+        .lead = bar->number("lead"), .radius = bar->number("radius"), .compression = bar->number("compression")};
+  if (const Values* bridging = block("bridging")) scene.bridging = {.cut = bridging->text("tool") == "cuts"};
+  if (const Values* pic = block("pic_damping")) scene.pic_damping = {.rate = pic->number("rate")};
+  if (const Values* xpic = block("xpic_damping"))
+    scene.xpic_damping = {.rate = xpic->number("rate"), .order = whole_number(*xpic, "order")};
+  if (const Values* thermostat = block("thermostat"))
+    scene.thermostat = {.kinetic_share = thermostat->number("kinetic_share"), .gain = thermostat->number("gain")};
   return scene;
+}
+
+std::vector<ToolFace> faces_of(const Scene& scene) {
+  if (scene.grips) return {};
+  std::vector<ToolFace> faces{ToolFace::rake, ToolFace::bottom};
+  if (scene.tool.tip_radius > 0.0) faces.push_back(ToolFace::tip);
+  if (scene.chip_breaker) faces.push_back(ToolFace::chip_breaker);
+  if (scene.sole) faces.push_back(ToolFace::sole);
+  if (scene.nose_bar) faces.push_back(ToolFace::nose_bar);
+  return faces;
+}
+
+double Tool::lowest_point(double radius) const {
+  return -radius * (1.0 + std::sin(rake)) / std::cos(rake);
 }
 
 }  // namespace kerf::forward

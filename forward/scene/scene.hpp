@@ -5,8 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "forward/scene/tool_face.hpp"
 #include "models/base/document.hpp"
-#include "models/laws/j2.hpp"
+#include "models/laws/material.hpp"
 #include "models/laws/traction_law.hpp"
 
 namespace kerf::forward {
@@ -14,9 +15,17 @@ namespace kerf::forward {
 /// A cut, as plain data in consistent units (mm, MPa, N, tonne, s, rad). An effect that a scene may leave out is an
 /// optional block; absence is the only way to switch it off.
 
+/// When a pair of crack faces fails, in terms of the modes' shares of their toughness.
+enum class MixedMode {
+  areas,       ///< G_I, G_II are the areas under the laws up to the largest openings
+  dissipated,  ///< ... without what unloading to the origin would give back
+  coupled      ///< both laws at one common share of the critical openings (Tvergaard 1990); the exponents do not count
+};
+
 struct Cohesive {
   std::shared_ptr<const laws::TractionLaw> mode_I, mode_II;
   double exponent_n, exponent_m;  ///< failure at (G_I/G_Ic)^n + (G_II/G_IIc)^m = 1
+  MixedMode mixed_mode = MixedMode::areas;
 };
 
 struct Cut {
@@ -28,14 +37,45 @@ struct Cut {
 };
 
 struct Tool {
-  double rake;       ///< alpha, from the crack plane's normal
-  double clearance;  ///< between clearance face and crack plane
+  double rake;            ///< alpha, from the crack plane's normal
+  double clearance;       ///< between clearance face and crack plane
+  double tip_radius = 0;  ///< of a tip rounded on both sides; 0 is sharp
+  double blunting = 5;    ///< travel, in depths, over which the radius grows to its value
+
+  /// x of the lowest point of a tip of this radius, behind the apex that it would have if it were sharp.
+  double lowest_point(double radius) const;
 };
 
-/// Coulomb friction on the rake face, tau = min(mu p, cap sigma_y/sqrt(3)).
+/// A second iron on the rake face.
+struct ChipBreaker {
+  double distance;  ///< b, from the tip up along the rake face
+  double angle;     ///< of its face from the crack plane's normal, like a rake angle
+  double land;      ///< length of its face
+};
+
+/// The sole of a plane on the uncut surface, its mouth open towards the tool.
+struct Sole {
+  double opening;        ///< m, from the tip to the mouth's front edge along the cut
+  double corner_radius;  ///< of that edge
+};
+
+/// A round bar pressing on the uncut surface.
+struct NoseBar {
+  double lead;  ///< of its lowest point ahead of the tip
+  double radius;
+  double compression;  ///< how far its lowest point lies below the uncut surface
+};
+
+/// Coulomb friction tau = min(mu p, cap tau_y), with a coefficient for each part of the tool.
 struct Friction {
-  double coefficient;
+  double coefficient;  ///< of the rake face and the tip
   double yield_cap;
+  double chip_breaker = 0, sole = 0, nose_bar = 0;
+};
+
+/// The tool's edge takes away the bonds that it passes.
+struct Bridging {
+  bool cut;
 };
 
 /// The clearance side pressed into the freshly cut face, its height tied to that face (a worn edge).
@@ -45,9 +85,29 @@ struct EdgeContact {
   double friction;     ///< Coulomb coefficient there
 };
 
+/// A cracked specimen is pulled apart instead of cut: see effects/grips.hpp.
+struct Grips {
+  bool both_arms;    ///< double cantilever beam; or the upper arm alone, the far end clamped
+  double position;   ///< of the grips from the specimen's end
+  double width;      ///< of a grip along the arm
+  double gauge;      ///< length over which an arm's rotation is read
+  double lower_arm;  ///< its height; the upper arm's is the depth of cut
+};
+
 /// FLIP blended towards PIC at a rate in cell transits of the elastic wave: beta = 1 - exp(-rate CFL) each step.
 struct PicDamping {
   double rate;
+};
+
+/// FLIP blended towards XPIC(m): like PIC damping, but it leaves the m - 1 smoothest orders of the velocity alone.
+struct XpicDamping {
+  double rate;
+  int order;
+};
+
+/// Feedback damping of all particles that holds the kinetic energy near a share of the elastic energy.
+struct Thermostat {
+  double kinetic_share, gain;
 };
 
 /// Extent of the simulated material around the tool tip, in depths of cut.
@@ -58,6 +118,7 @@ struct Window {
 struct Resolution {
   int cells_through_chip, particles_per_cell_side, markers_per_cell;
   double courant_number;
+  double cell_stretch = 1;  ///< length of a cell along the cut over its height
 };
 
 struct SteadyState {
@@ -67,19 +128,36 @@ struct SteadyState {
 
 struct Scene {
   std::string title;
-  laws::J2 material;
+  laws::Material material;
   Cohesive cohesive;
   Cut cut;
   Tool tool;
   std::optional<Friction> friction;
   std::optional<EdgeContact> edge_contact;
+  std::optional<ChipBreaker> chip_breaker;
+  std::optional<Sole> sole;
+  std::optional<NoseBar> nose_bar;
+  std::optional<Bridging> bridging;
+  std::optional<Grips> grips;
   std::optional<PicDamping> pic_damping;
+  std::optional<XpicDamping> xpic_damping;
+  std::optional<Thermostat> thermostat;
   Window window;
   Resolution resolution;
   SteadyState steady_state;
 
-  double cell() const { return cut.depth / resolution.cells_through_chip; }
+  double cell() const { return cut.depth / resolution.cells_through_chip; }  ///< height, mm
+  double cell_length() const { return resolution.cell_stretch * cell(); }
+  /// Height of the material below the crack plane, in depths.
+  double base_height() const { return grips ? grips->lower_arm / cut.depth : window.below; }
+  double marker_spacing() const { return cell_length() / resolution.markers_per_cell; }
+  int particles_along_cell() const {
+    return resolution.particles_per_cell_side + (resolution.cell_stretch > 2.0 ? 1 : 0);
+  }
 };
+
+/// The faces of the scene's tool.
+std::vector<ToolFace> faces_of(const Scene& scene);
 
 /// Every block a scene may hold, with its parameters; what `kerf list`, `kerf check` and calibrations read.
 const std::vector<Block>& scene_blocks();

@@ -112,8 +112,17 @@ void write_reduction(const inverse::Folder& folder) {
   }
   const forward::Scene scene = forward::read_scene(folder.job().scene);
   chip::FitOptions options;
-  options.elastic_modulus = scene.material.elastic_modulus;
-  options.poisson_ratio = scene.material.poisson_ratio;
+  std::visit(
+      [&](const auto& law) {
+        if constexpr (requires { law.elastic_modulus; }) {
+          options.elastic_modulus = law.elastic_modulus;
+          options.poisson_ratio = law.poisson_ratio;
+        } else {
+          options.elastic_modulus = law.constants().modulus_x;
+          options.poisson_ratio = law.constants().poisson_xz;
+        }
+      },
+      scene.material);
   const chip::Measurements measurements = inverse::measurements_of(all);
   chip::Reduction reduction = chip::reduce(measurements, {}, options);
   reduction.warnings.insert(reduction.warnings.begin(), notes.begin(), notes.end());

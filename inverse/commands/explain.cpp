@@ -20,11 +20,6 @@ using forward::State;
 
 constexpr double degrees = 57.29577951308232;
 
-/// In the order of forward::Particles::fields().
-constexpr std::array<const char*, 10> particle_fields{
-    "position x",          "position y",          "velocity x",          "velocity y",     "Kirchhoff stress xx",
-    "Kirchhoff stress yy", "Kirchhoff stress zz", "Kirchhoff stress xy", "plastic strain", "reference volume"};
-
 /// Seconds that each stage took over the first steps of the cut: a measurement, not a model.
 std::vector<double> time_stages(State& state, const std::vector<Stage>& stages, int steps) {
   std::vector<double> seconds(stages.size(), 0.0);
@@ -61,7 +56,7 @@ void print_discretisation(const Scene& scene, const State& state) {
   fmt::print("  time step {:.3g} us ({:g} of an elastic wave's transit of a cell)\n", 1e6 * state.step,
              scene.resolution.courant_number);
   // The mixed-mode zone is shorter still; this is the length over which mode I traction acts (Hillerborg).
-  const double zone = scene.material.plane_strain_modulus() * scene.cohesive.mode_I->toughness() /
+  const double zone = laws::plane_strain_modulus(scene.material) * scene.cohesive.mode_I->toughness() /
                       std::pow(scene.cohesive.mode_I->strength(), 2);
   fmt::print("  the critical opening is {:.2g} cells, the elastic cohesive zone E'G/sigma^2 about {:.2g} cells\n\n",
              scene.cohesive.mode_I->critical_opening() / scene.cell(), zone / scene.cell());
@@ -77,26 +72,26 @@ void print_stages(const std::vector<Stage>& stages, const std::vector<double>& s
 }
 
 void print_memory(State& state) {
-  static_assert(std::tuple_size_v<decltype(state.particles.fields())> == particle_fields.size());
-  fmt::print("Each particle carries {} bytes, 8 for each of\n  ", 8 * particle_fields.size());
+  const auto fields = state.particles.fields();
+  fmt::print("Each particle carries {} bytes, 8 for each of\n  ", 8 * fields.size());
   std::string list;
-  for (std::size_t i = 0; i < particle_fields.size(); ++i) {
-    const bool ends_line = i == 3 || i == 7;
-    list += particle_fields[i];
-    list += i + 1 == particle_fields.size() ? "\n" : ends_line ? ",\n  " : ", ";
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    list += fields[i].name;
+    list += i + 1 == fields.size() ? "\n" : i % 4 == 3 ? ",\n  " : ", ";
   }
   fmt::print("{}The crack is followed by {} pairs of markers.\n\n", list, state.crack.size());
 }
 
 void print_absent(const Scene& scene) {
   fmt::print("Not simulated\n");
-  if (!scene.friction) fmt::print("  friction on the rake face: the scene has no [friction]\n");
+  if (!scene.friction) fmt::print("  friction on the tool: the scene has no [friction]\n");
   if (!scene.edge_contact)
     fmt::print("  contact of the edge with the cut face: the scene has no [edge_contact], the tool is sharp\n");
   if (!scene.pic_damping) fmt::print("  numerical damping: the scene has no [pic_damping]\n");
-  if (scene.material.hardening_modulus == 0) fmt::print("  hardening: hardening_modulus is zero, perfectly plastic\n");
-  fmt::print(
-      "  heat, rate dependence, a deforming or blunt tool, a crack that leaves its plane, contact of the chip\n");
+  if (!scene.bridging) fmt::print("  bonds cut by the tool's edge: the scene has no [bridging]\n");
+  if (!scene.chip_breaker) fmt::print("  a chip breaker: the scene has no [chip_breaker]\n");
+  if (!scene.sole) fmt::print("  the sole of a plane: the scene has no [sole]\n");
+  fmt::print("  heat, rate dependence, a deforming tool, a crack that leaves its plane, contact of the chip\n");
   fmt::print("  with itself: this solver has no such effects\n\n");
 }
 

@@ -89,15 +89,18 @@ void print_table(const forward::CutResult& r) {
   };
   row("F_c", force(r.F_c), "cutting force per width");
   row("F_t", force(r.F_t), "transverse force per width, positive pushes the tool away");
-  row("  rake, normal", force(r.rake_normal), "");
-  row("  rake, friction", force(r.rake_tangential), "");
-  row("  bottom, normal", force(r.bottom_normal), "");
-  row("  bottom, friction", force(r.bottom_tangential), "");
+  for (const forward::FaceResult& face : r.faces) {
+    const std::string face_name = forward::name(face.face);
+    row(("  " + face_name).c_str(), force(face.normal), "normal force");
+    if (face.tangential.value != 0.0) row("", force(face.tangential), "friction");
+    if (face.contact_length.value > 0.0) row("", number(face.contact_length, "mm"), "in contact");
+  }
   row("steady", r.steady ? fmt::format("from {:.2f} mm", r.steady_from) : "no", "");
   row("branch", forward::name(r.branch), "does the tool touch the crack tip?");
   row("crack lead", number(r.crack_lead, "mm"), "crack tip ahead of the tool tip");
   row("mode I fraction", fmt::format("{:.3f}", r.mode_I_fraction), "of the energy spent in separation");
-  row("fracture energy ratio", fmt::format("{:.4f}", r.fracture_energy_ratio), "booked per new area, over the law's");
+  row("fracture energy ratio", fmt::format("{:.4f}", r.fracture_energy_ratio),
+      "booked per new area, over what broken bonds had used");
   row("chip ratio", number(r.chip_ratio, ""), "chip thickness over depth of cut");
   row("chip curvature", number(r.chip_curvature, "1/mm"), "positive curls away from the tool");
   row("deepest penetration", fmt::format("{:.3f} cells", r.deepest_penetration), "of a crack face into the tool");

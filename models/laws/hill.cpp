@@ -2,7 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -155,19 +156,24 @@ Hill::Hill(const Constants& constants)
   c_xz_ = rounded(stiffness(0, 2));
   c_yz_ = rounded(stiffness(1, 2));
 
-  // W and D from the singular values of B L, C = L L^T: squaring first would lose the weaker mode's digits.
+  // W turns the rows of B L, C = L L^T, until they are orthogonal; D are their squared lengths. B C B^T itself would
+  // have lost the weaker mode's digits.
   const double reference = hardening_.yield_stress;
   const Rows factor = reference * normal_factor(constants);
   const Square lower = stiffness.llt().matrixL();
-  const Eigen::JacobiSVD<Rows> svd(factor * lower, Eigen::ComputeFullU);
-  const Rows modes = svd.matrixU().transpose() * factor;
-  const Rows back = modes * stiffness;
+  const Rows product = factor * lower;
+  const Real overlap = product.row(0).dot(product.row(1));
+  const Real angle = std::atan2(2 * overlap, product.row(0).squaredNorm() - product.row(1).squaredNorm()) / 2;
+  Eigen::Matrix<Real, 2, 2> turn;
+  turn << std::cos(angle), std::sin(angle), -std::sin(angle), std::cos(angle);
+  const Rows modes = turn * factor, back = modes * stiffness, orthogonal = turn * product;
+  const Real largest = product.squaredNorm();
   for (std::size_t k = 0; k < 2; ++k) {
     const auto row = static_cast<Eigen::Index>(k);
-    const Real singular = svd.singularValues()(row);
+    const Real mode_stiffness = orthogonal.row(row).squaredNorm();
     // What rounding leaves of a direction that cannot yield is no mode.
-    if (singular <= 1e-13L * svd.singularValues()(0)) continue;
-    stiffness_[k] = rounded(singular * singular);
+    if (mode_stiffness <= 1e-26L * largest) continue;
+    stiffness_[k] = rounded(mode_stiffness);
     for (std::size_t i = 0; i < 3; ++i) {
       modes_[k][i] = rounded(modes(row, static_cast<Eigen::Index>(i)));
       return_[k][i] = rounded(back(row, static_cast<Eigen::Index>(i)));
@@ -282,16 +288,19 @@ bool Hill::update_with(const Hardening& hardening, std::size_t n, StrainIncremen
       converged &= find_roots(
           [&](const Batch& at, Batch& value, Batch& slope) {
             for (std::size_t i = 0; i < batch_size; ++i) {
-              const double k0 = 1.0 / (1.0 + at[i] * D0), k1 = 1.0 / (1.0 + at[i] * D1), k2 = 1.0 / (1.0 + at[i] * D2);
+              // One division for the three factors 1/(1 + m D), one for 1/q.
+              const double f0 = 1.0 + at[i] * D0, f1 = 1.0 + at[i] * D1, f2 = 1.0 + at[i] * D2;
+              const double all = 1.0 / (f0 * f1 * f2);
+              const double k0 = f1 * f2 * all, k1 = f0 * f2 * all, k2 = f0 * f1 * all;
               const double s0 = z0[i] * k0, s1 = z1[i] * k1, s2 = z2[i] * k2;
-              const double squared = s0 * s0 + s1 * s1 + s2 * s2 + 1e-300;
-              const double now = std::sqrt(squared);
-              const double now_slope = -(D0 * k0 * s0 * s0 + D1 * k1 * s1 * s1 + D2 * k2 * s2 * s2) / now;
-              const double strain_slope = (k0 * s0 * s0 + k1 * s1 * s1 + k2 * s2 * s2) / now;
+              const double now = std::sqrt(s0 * s0 + s1 * s1 + s2 * s2 + 1e-300), inverse = 1.0 / now;
+              const double w0 = k0 * s0 * s0, w1 = k1 * s1 * s1, w2 = k2 * s2 * s2;
+              const double now_slope = -(D0 * w0 + D1 * w1 + D2 * w2) * inverse;
+              const double strain_slope = (w0 + w1 + w2) * inverse;
               const double strain = eps[i] + at[i] * now;
               const double flow = hardening.flow_stress(strain);
-              value[i] = flow / now - 1.0;
-              slope[i] = (hardening.slope(strain) * strain_slope - flow * now_slope / now) / now;
+              value[i] = flow * inverse - 1.0;
+              slope[i] = (hardening.slope(strain) * strain_slope - flow * now_slope * inverse) * inverse;
             }
           },
           upper, m);

@@ -31,6 +31,19 @@ concept MaterialLaw = requires(const Law& law, const Values& values, StressPoint
   { law.update(std::size_t{8}, strain, points) } -> std::same_as<bool>;
 };
 
+inline double density(const Material& material) {
+  return std::visit([](const auto& law) { return law.density; }, material);
+}
+inline double plane_strain_modulus(const Material& material) {
+  return std::visit([](const auto& law) { return law.plane_strain_modulus(); }, material);
+}
+inline double shear_yield(const Material& material) {
+  return std::visit([](const auto& law) { return law.shear_yield(); }, material);
+}
+inline bool has_axes(const Material& material) {
+  return std::visit([](const auto& law) { return law.has_axes; }, material);
+}
+
 /// One [material] block per law.
 const std::vector<Block>& material_blocks();
 

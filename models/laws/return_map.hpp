@@ -31,17 +31,26 @@ bool find_roots(const Evaluate& evaluate, const Batch& upper, Batch& x) {
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
     evaluate(x, value, slope);
     const bool newton_allowed = iteration < unhindered || iteration % 2 == 0;
-    double open = 0.0;
+    double open = 0.0, outside = 0.0;
+    Batch next{};
     for (std::size_t i = 0; i < batch_size; ++i) {
       const bool done = (std::abs(value[i]) <= return_tolerance) | (upper[i] == 0.0);
-      open = done ? open : 1.0;
       low[i] = value[i] < 0.0 ? x[i] : low[i];
       high[i] = value[i] < 0.0 ? high[i] : x[i];
       const double newton = x[i] - value[i] / slope[i];
-      const double between = low[i] > 0.0 ? std::sqrt(low[i]) * std::sqrt(high[i]) : towards_zero * high[i];
-      const double next = (newton > low[i]) & (newton < high[i]) & newton_allowed ? newton : between;
-      x[i] = done ? x[i] : next;
+      const bool inside = (newton > low[i]) & (newton < high[i]) & newton_allowed;
+      next[i] = done ? x[i] : newton;
+      open = done ? open : 1.0;
+      outside = done | inside ? outside : 1.0;
     }
+    if (outside > 0.0)
+      for (std::size_t i = 0; i < batch_size; ++i) {
+        const bool done = (std::abs(value[i]) <= return_tolerance) | (upper[i] == 0.0);
+        const bool inside = (next[i] > low[i]) & (next[i] < high[i]) & newton_allowed;
+        const double between = low[i] > 0.0 ? std::sqrt(low[i]) * std::sqrt(high[i]) : towards_zero * high[i];
+        next[i] = done | inside ? next[i] : between;
+      }
+    x = next;
     if (open == 0.0) return true;
     towards_zero *= towards_zero;
   }

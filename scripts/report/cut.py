@@ -15,7 +15,6 @@ from .style import (ACCENT, ACCENT_LIGHT, ACCENT_PALE, INK, QUIET, SAND, STRAIN,
 
 # In the file forces are N/mm and energies N mm/mm; the page speaks N/m and J/m.
 N_PER_M = 1000.0
-CLEARANCE_DRAWN = np.radians(12)  # of the tool's sketched underside when the scene does not say
 
 LEDGER = [("fracture", "fracture", ACCENT), ("plastic", "plastic flow", ACCENT_LIGHT), ("friction", "friction", WARM),
           ("damping", "damping", WARM_LIGHT), ("elastic", "elastic", SAND), ("kinetic", "kinetic", "#8f9c9f")]
@@ -114,8 +113,8 @@ def chip_picture(cut):
     for points in cut.faces.values():
         shown = (points[:, 0] > left) & (points[:, 0] < right) & (points[:, 1] < y.max())  # not past the chip's end
         axes.plot(points[shown, 0], points[shown, 1], color=WARM, linewidth=1.2)
-    axes.add_patch(Polygon(_tool_outline(tool, left, top, bottom), closed=True, facecolor="#f4f1ea", edgecolor=INK,
-                           linewidth=1.2, zorder=0.5))
+    for outline in _tool_outlines(tool, left, right, top, bottom):
+        axes.add_patch(Polygon(outline, closed=True, facecolor="#f4f1ea", edgecolor=INK, linewidth=1.2, zorder=0.5))
     inward = sum(_tool_faces(tool))  # half-way between the rake face and the clearance face
     axes.text(*(np.array([tool["tip_x"], tool["tip_y"]]) + 1.7 * depth * inward / np.linalg.norm(inward)), "tool",
               color=QUIET, ha="center", va="center", zorder=0.6, clip_on=True)
@@ -145,17 +144,39 @@ def _readable_maximum(strain):
 
 def _tool_faces(tool):
     """Unit vectors from the tip up the rake face and back along the clearance face."""
+    clearance = tool.get("clearance", np.radians(12))
     return (np.array([-np.sin(tool["rake"]), np.cos(tool["rake"])]),
-            np.array([-np.cos(CLEARANCE_DRAWN), np.sin(CLEARANCE_DRAWN)]))
+            np.array([-np.cos(clearance), np.sin(clearance)]))
 
 
-def _tool_outline(tool, left, top, bottom):
-    """Corners of the sharp tool: up the rake face, and back along the clearance face, to the edge of the picture."""
-    tip = np.array([tool["tip_x"], tool["tip_y"]])
+def _tool_outlines(tool, left, right, top, bottom):
+    """The parts of the tool as polygons: blade (its tip sharp or round), chip breaker, sole."""
+    apex = np.array([tool["tip_x"], tool["tip_y"]])
     rake_face, clearance_face = _tool_faces(tool)
-    up = tip + rake_face * (top - bottom + tip[0] - left) * 2
-    back = tip + clearance_face * (top - bottom + tip[0] - left) * 2
-    return [tip, up, [min(up[0], back[0]), max(up[1], back[1])], back]
+    far = (top - bottom + right - left) * 2
+    radius = tool.get("tip_radius", 0.0)
+    tip = [apex]
+    if radius > 0:
+        centre = apex + np.array([-radius * (1 + np.sin(tool["rake"])) / np.cos(tool["rake"]), radius])
+        clearance = tool.get("clearance", np.radians(12))
+        angles = np.linspace(tool["rake"], -np.pi / 2 - clearance, 40)
+        tip = list(centre + radius * np.column_stack([np.cos(angles), np.sin(angles)]))
+    up, back = tip[0] + rake_face * far, tip[-1] + clearance_face * far
+    blade = [up, *tip, back, [min(up[0], back[0]), max(up[1], back[1])]]
+    outlines = [blade]
+    if "breaker_distance" in tool:
+        foot = apex + tool["breaker_distance"] * rake_face
+        face = np.array([-np.sin(tool["breaker_angle"]), np.cos(tool["breaker_angle"])])
+        end = foot + tool["breaker_land"] * face
+        behind = np.array([-np.cos(tool["breaker_angle"]), -np.sin(tool["breaker_angle"])])
+        outlines.append([foot, end, end + behind * far, foot + behind * far])
+    if "mouth" in tool:
+        wall, low = tool["tip_x"] + tool["mouth"], tool["depth"]
+        radius = tool["mouth_radius"]
+        angles = np.linspace(np.pi, 1.5 * np.pi, 20)
+        corner = np.array([wall + radius, low + radius]) + radius * np.column_stack([np.cos(angles), np.sin(angles)])
+        outlines.append([[wall, top + far], *corner, [right + far, low], [right + far, top + far]])
+    return outlines
 
 
 def energy_ledger(cut):

@@ -4,6 +4,9 @@ from . import cut as drawing
 from .page import Page, chip, finite, html, integer, number, prose, symbol, with_error
 
 
+FACES = {"rake": "rake face", "bottom": "clearance side", "tip": "round tip"}
+
+
 def page_of_cut(cut):
     """The page of a single file of `kerf simulate -o`."""
     result = cut.result
@@ -20,10 +23,12 @@ def page_of_cut(cut):
     section.warnings([prose(reason) for reason in result["refusals"]])
     section.facts(facts_of(result))
     faces = result["faces"]
-    section.table(["force on a tool face, N/m", "normal", "along the face"],
-                  [["rake face", _bare(faces["rake_normal"]), _bare(faces["rake_tangential"])],
-                   ["clearance side", _bare(faces["bottom_normal"]), _bare(faces["bottom_tangential"])]],
-                  numeric=(1, 2))
+    names = [key.removesuffix("_normal") for key in faces if key.endswith("_normal")]
+    if names:
+        section.table(["force on a tool face, N/m", "normal", "along the face", "contact length, mm"],
+                      [[FACES.get(name, name.replace("_", " "))] +
+                       [_bare(faces[f"{name}_{what}"]) for what in ("normal", "tangential", "contact_length")]
+                       for name in names], numeric=(1, 2, 3))
     add_cut_figures(page, cut)
 
     cost = result["cost"]

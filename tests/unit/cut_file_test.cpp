@@ -92,7 +92,7 @@ TEST_F(CutFile, GivesBackWhatWasWritten) {
     EXPECT_EQ(travel[i], cut.history[i].travel);
     EXPECT_EQ(F_c[i], cut.history[i].F_c);
     EXPECT_EQ(F_t[i], cut.history[i].F_t);
-    EXPECT_EQ(bottom[i], cut.history[i].bottom_tangential);
+    EXPECT_EQ(bottom[i], cut.history[i].face[static_cast<std::size_t>(ToolFace::bottom)].tangential);
     EXPECT_EQ(plastic[i], cut.history[i].ledger.plastic);
     EXPECT_EQ(residue[i], cut.history[i].ledger.residue());
   }

@@ -38,7 +38,7 @@ TEST(Job, PatchesTheSceneThroughItsOrdinaryReader) {
   Eigen::VectorXd point(3);
   point << space.coordinate(0, 55), space.coordinate(1, 3), space.coordinate(2, 0.5);
   const forward::Scene scene = forward::read_scene(space.scene(point, job.cuts[1]));
-  EXPECT_NEAR(scene.material.yield_stress, 55, 1e-12);
+  EXPECT_NEAR(std::sqrt(3.0) * laws::shear_yield(scene.material), 55, 1e-12);
   EXPECT_NEAR(scene.cohesive.mode_I->toughness(), 3, 1e-12);
   EXPECT_NEAR(scene.cohesive.mode_II->toughness(), 3, 1e-12);  // tied
   EXPECT_NEAR(scene.friction->coefficient, 0.5, 1e-12);

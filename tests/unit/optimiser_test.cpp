@@ -158,7 +158,7 @@ TEST(Verdict, FollowsErrorAndInterval) {
 /// A cut whose force halves when the crack runs ahead of the tool, as soft materials do.
 forward::CutResult two_branches(const forward::Scene& scene) {
   forward::CutResult result = synthetic_cut(scene);
-  if (scene.material.yield_stress > 61) {
+  if (std::sqrt(3.0) * laws::shear_yield(scene.material) > 61) {
     result.branch = forward::Branch::bending;
     result.F_c.value *= 0.5;
   }

@@ -11,10 +11,8 @@ inline CutResult sample_cut() {
   CutResult r;
   r.F_c = {7.612, 0.012};
   r.F_t = {-7.601, 0.011};
-  r.rake_normal = {10.76, 0.02};
-  r.rake_tangential = {0.25, 0.01};
-  r.bottom_normal = {0.125, 0.005};
-  r.bottom_tangential = {0.0625, 0.004};
+  r.faces = {{ToolFace::rake, {10.76, 0.02}, {0.25, 0.01}, {0.3, 0.02}},
+             {ToolFace::bottom, {0.125, 0.005}, {0.0625, 0.004}, {0.05, 0.003}}};
   r.chip_ratio = {1.12, 0.01};
   r.chip_curvature = {0.25, 0.05};
   r.crack_lead = {0.138, 0.002};
@@ -31,10 +29,8 @@ inline CutResult sample_cut() {
     const double travel = 0.0625 * crossing, force = 7.6 * (1 - std::exp(-4 * travel));
     ForceSample sample{};
     sample.travel = travel;
-    sample.rake_normal = 1.4 * force;
-    sample.rake_tangential = 0.1 * force;
-    sample.bottom_normal = 0.02 * force;
-    sample.bottom_tangential = 0.01 * force;
+    sample.face[static_cast<std::size_t>(ToolFace::rake)] = {.normal = 1.4 * force, .tangential = 0.1 * force};
+    sample.face[static_cast<std::size_t>(ToolFace::bottom)] = {.normal = 0.02 * force, .tangential = 0.01 * force};
     sample.F_c = force;
     sample.F_t = -force;
     sample.crack_lead = 0.138;

@@ -42,7 +42,7 @@ inline Forces synthetic_forces(double depth, double rake, const Truth& truth) {
 
 inline forward::CutResult synthetic_cut(const forward::Scene& scene) {
   const Forces forces = synthetic_forces(scene.cut.depth, scene.tool.rake,
-                                         {.yield_stress = scene.material.yield_stress,
+                                         {.yield_stress = std::sqrt(3.0) * laws::shear_yield(scene.material),
                                           .toughness = scene.cohesive.mode_I->toughness(),
                                           .friction = scene.friction->coefficient});
   forward::CutResult result;
