@@ -32,7 +32,8 @@ struct ForceSample {
   double travel;                                ///< tool position at the crossing's end, mm
   std::array<FaceForce, tool_face_count> face;  ///< normal force, friction and contact length of every tool face
   double F_c, F_t;
-  double crack_lead;                    ///< mm
+  double crack_lead;                    ///< from the tool tip to the foremost broken pair, mm
+  double softening_lead;                ///< ... to the foremost pair past the peak of its law, mm
   Extension extension;                  ///< of a specimen in grips
   double fracture_I;                    ///< mode I part of ledger.fracture
   double broken_length, broken_energy;  ///< path whose bonds are gone, mm, and what their laws had used up, N mm/mm
@@ -70,6 +71,7 @@ struct CutResult {
   Estimate chip_ratio;            ///< chip thickness / depth of cut
   Estimate chip_curvature;        ///< 1/mm; positive curls away from the tool
   Estimate crack_lead;            ///< mm from the tool tip to the foremost broken pair
+  Estimate softening_lead;        ///< mm from the tool tip to the foremost pair past the peak of its law
   double process_zone = 0;        ///< mm of crack path along which unbroken pairs have used over 5 % of their toughness
   Branch branch = Branch::touching;
   double mode_I_fraction = 0;

@@ -135,11 +135,19 @@ void pull_faces(State& state, const Cohesive& cohesive) {
 
 void break_bond(State& state, const Cohesive& cohesive, std::size_t k) {
   Crack& crack = state.crack;
+  // What a bond has taken: the area up to its largest opening, less what it gave back since, on the way to the origin.
+  const auto taken = [](const laws::TractionLaw& law, double opening, double largest) {
+    if (largest == 0.0) return 0.0;
+    const double share = std::min(opening / largest, 1.0);
+    return law.area(largest) - 0.5 * law.traction(largest) * largest * (1.0 - share * share);
+  };
+  const double normal = std::max(crack.face[above].y[k] - crack.face[below].y[k], 0.0);
+  const double shear = std::abs(crack.face[above].x[k] - crack.face[below].x[k]);
   crack.intact[k] = 0;
   crack.front = std::max(crack.front, crack.reference_x[k]);
   state.work.broken_length += crack.spacing;
-  state.work.broken_energy +=
-      crack.spacing * (cohesive.mode_I->area(crack.largest_normal[k]) + cohesive.mode_II->area(crack.largest_shear[k]));
+  state.work.broken_energy += crack.spacing * (taken(*cohesive.mode_I, normal, crack.largest_normal[k]) +
+                                               taken(*cohesive.mode_II, shear, crack.largest_shear[k]));
 }
 
 void close_faces(State& state, double stiffness) {

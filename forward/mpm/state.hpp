@@ -131,7 +131,7 @@ struct Work {
   double tool = 0, mode_I = 0, mode_II = 0, friction = 0, damping = 0;
   double retired_elastic = 0, retired_plastic = 0, retired_kinetic = 0;
   double broken_length = 0;  ///< mm of crack path whose bonds are gone
-  double broken_energy = 0;  ///< areas under the laws that these had used up
+  double broken_energy = 0;  ///< what these had taken, N mm/mm
 };
 
 /// Everything that a step reads and writes.

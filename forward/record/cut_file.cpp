@@ -104,11 +104,12 @@ struct Column {
   double Owner::*value;
 };
 
-constexpr std::array<Column<ForceSample>, 8> history_columns{
+constexpr std::array<Column<ForceSample>, 9> history_columns{
     {{"travel", "mm", &ForceSample::travel},
      {"F_c", "N/mm", &ForceSample::F_c},
      {"F_t", "N/mm", &ForceSample::F_t},
      {"crack_lead", "mm", &ForceSample::crack_lead},
+     {"softening_lead", "mm", &ForceSample::softening_lead},
      {"penetration", "mm", &ForceSample::penetration},
      {"fracture_I", "N mm/mm", &ForceSample::fracture_I},
      {"broken_length", "mm", &ForceSample::broken_length},

@@ -54,24 +54,25 @@ ChipShape measure_chip(const State& state, double depth) {
   return {area / ((high - low) * depth), 2.0 * line[2] / std::pow(std::hypot(1.0, line[1]), 3) / depth};
 }
 
+/// Reference position of the foremost pair that is past the peak of one of its laws: where separation is under way.
+double softened_front(const Crack& crack, const Cohesive& law) {
+  for (std::size_t k = crack.size(); k-- > 0;)
+    if (!crack.intact[k] || law.mode_I->slope(crack.largest_normal[k]) < 0.0 ||
+        law.mode_II->slope(crack.largest_shear[k]) < 0.0)
+      return crack.reference_x[k];
+  return crack.front;
+}
+
 Extension measure_extension(const State& state, const Scene& scene, double release) {
   const Crack& crack = state.crack;
-  const Cohesive& law = scene.cohesive;
   const double notch = scene.cut.notch * scene.cut.depth;
-  Extension extension{.opening = state.tool.x, .release = release};
-  bool at_notch = true;
-  for (std::size_t k = 0; k < crack.size(); ++k) {
-    if (crack.reference_x[k] <= notch) continue;
-    if (at_notch) {
-      extension.at_notch_I = law.mode_I->area(crack.largest_normal[k]);
-      extension.at_notch_II = law.mode_II->area(crack.largest_shear[k]);
-      at_notch = false;
-    }
-    if (law.mode_I->slope(crack.largest_normal[k]) < 0.0 || law.mode_II->slope(crack.largest_shear[k]) < 0.0 ||
-        !crack.intact[k])
-      extension.crack = crack.reference_x[k] - notch;
-  }
-  return extension;
+  const auto first = static_cast<std::size_t>(
+      std::upper_bound(crack.reference_x.begin(), crack.reference_x.end(), notch) - crack.reference_x.begin());
+  return {.opening = state.tool.x,
+          .crack = std::max(0.0, softened_front(crack, scene.cohesive) - notch),
+          .release = release,
+          .at_notch_I = scene.cohesive.mode_I->area(crack.largest_normal.at(first)),
+          .at_notch_II = scene.cohesive.mode_II->area(crack.largest_shear.at(first))};
 }
 
 void Recorder::add_step(const State& state) {
@@ -96,6 +97,7 @@ void Recorder::add_crossing(const State& state, const Scene& scene) {
                      .F_c = sum_.on_work_x / steps_,
                      .F_t = -sum_.on_work_y / steps_,
                      .crack_lead = state.crack.front - state.tool.x,
+                     .softening_lead = softened_front(state.crack, scene.cohesive) - state.tool.x,
                      .extension = {},
                      .fracture_I = state.work.mode_I,
                      .broken_length = state.work.broken_length,

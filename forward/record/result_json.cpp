@@ -91,6 +91,7 @@ Json result_json(const CutResult& result) {
   json["branch"] = name(result.branch);
   json["crack_lead"] = finite_or_null(result.crack_lead.value);
   json["crack_lead_se"] = finite_or_null(result.crack_lead.standard_error);
+  json["softening_lead"] = finite_or_null(result.softening_lead.value);
   json["process_zone"] = finite_or_null(result.process_zone);
   json["mode_I_fraction"] = finite_or_null(result.mode_I_fraction);
   json["fracture_energy"] = {{"value", finite_or_null(result.fracture_energy / consistent_units_in("J/m^2"))},
@@ -109,11 +110,8 @@ Json result_json(const CutResult& result) {
   json["ledger"] = energies(result.ledger);
   json["deepest_penetration"] = finite_or_null(result.deepest_penetration);
   json["cost"] = cost_of(result.cost);
-  json["units"] = {{"steady_from", "mm"},
-                   {"crack_lead", "mm"},
-                   {"crack_lead_se", "mm"},
-                   {"process_zone", "mm"},
-                   {"deepest_penetration", "cells"}};
+  json["units"] = {{"steady_from", "mm"},    {"crack_lead", "mm"},   {"crack_lead_se", "mm"},
+                   {"softening_lead", "mm"}, {"process_zone", "mm"}, {"deepest_penetration", "cells"}};
   return json;
 }
 

@@ -149,6 +149,7 @@ void summarise(CutResult& result, const Recorder& recorder, const State& state, 
       result.sliding_share = result.faces.back().tangential.value / of_face(&FaceForce::slip_limit).value;
   }
   result.crack_lead = mean(&ForceSample::crack_lead);
+  result.softening_lead = mean(&ForceSample::softening_lead);
   result.deepest_penetration = mean(&ForceSample::penetration).value / scene.cell();
   // The chip reaches the place where it is measured later than the force settles: it has a start of its own.
   const std::vector<double> ratio = series(recorder.chip(), &ChipShape::ratio);
@@ -162,7 +163,7 @@ void summarise(CutResult& result, const Recorder& recorder, const State& state, 
   };
   result.chip_ratio = chip_mean(&ChipShape::ratio);
   result.chip_curvature = chip_mean(&ChipShape::curvature);
-  result.branch = result.crack_lead.value > 0.2 * scene.cut.depth ? Branch::bending : Branch::touching;
+  result.branch = result.softening_lead.value > 0.2 * scene.cut.depth ? Branch::bending : Branch::touching;
 
   result.process_zone = process_zone(state.crack, scene.cohesive);
 

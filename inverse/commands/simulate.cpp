@@ -97,7 +97,8 @@ void print_table(const forward::CutResult& r) {
   }
   row("steady", r.steady ? fmt::format("from {:.2f} mm", r.steady_from) : "no", "");
   row("branch", forward::name(r.branch), "does the tool touch the crack tip?");
-  row("crack lead", number(r.crack_lead, "mm"), "crack tip ahead of the tool tip");
+  row("crack lead", number(r.crack_lead, "mm"), "foremost broken bond ahead of the tool tip");
+  row("softening lead", number(r.softening_lead, "mm"), "foremost bond past its peak ahead of the tool tip");
   row("mode I fraction", fmt::format("{:.3f}", r.mode_I_fraction), "of the energy spent in separation");
   row("fracture energy ratio", fmt::format("{:.4f}", r.fracture_energy_ratio),
       "booked per new area, over what broken bonds had used");
