@@ -27,19 +27,24 @@ void move_face(State& state, Face& face, Side side) {
     face.force_x[k] = face.force_y[k] = 0.0;
     const double column = grid.column_of(face.x[k]), row = grid.row_of(face.y[k]);
     face.inverse_mass[k] = 0.0;
-    if (!grid.holds(column, row)) continue;
+    if (!grid.holds(column, row) || !grid.carries(face.x[k], face.y[k])) continue;
     const Spline sx(column), sy(row);
-    double mass = 0.0;
+    double mass = 0.0, squares = 0.0;
     Lanes momentum{};
     for (int j = 0; j < 3; ++j) {
       const std::size_t node = grid.node(sx.base, sy.base + j);
       const double w = sy.weight(j);
-      for (int i = 0; i < 3; ++i) mass += w * sx.weight(i) * field.mass[node + static_cast<std::size_t>(i)];
+      for (int i = 0; i < 3; ++i) {
+        const double share = w * sx.weight(i), node_mass = field.mass[node + static_cast<std::size_t>(i)];
+        mass += share * node_mass;
+        squares += share * share * node_mass;
+      }
       momentum += w * load(&field.momentum[2 * node]);
     }
     if (mass <= state.smallest_mass) continue;
     momentum *= sx.row_weights();
     face.inverse_mass[k] = 1.0 / mass;
+    face.moved_mass[k] = mass * mass / squares;
     face.velocity_x[k] = sum_x(momentum) / mass;
     face.velocity_y[k] = sum_y(momentum) / mass;
     face.node_column[k] = sx.base;

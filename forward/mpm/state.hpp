@@ -69,6 +69,7 @@ struct VelocityField {
 struct Grid {
   int columns = 0, rows = 0;
   double cell_x = 0, cell_y = 0, inverse_cell_x = 0, inverse_cell_y = 0, origin_x = 0, origin_y = 0;
+  double left = 0, top = 0;  ///< material beyond these leaves the window at its next shift
   std::array<VelocityField, 2> side;
   bool clamps_end = false;  ///< the far end is held across the crack plane too, not only along it
 
@@ -82,6 +83,8 @@ struct Grid {
   bool holds(double column, double row) const {
     return column >= 1.0 && row >= 1.0 && column < columns - 2.0 && row < rows - 2.0;
   }
+  /// True where a marker has material all around: at the edges of the window it would follow what is left of it.
+  bool carries(double x, double y) const { return x > left + cell_x && y < top - cell_y; }
 };
 
 /// Markers on a surface of the work, in the order of their reference position.
@@ -91,6 +94,7 @@ struct Face {
   std::vector<int> node_column, node_row;  ///< first node of the mass-weighted kernel ...
   std::vector<double> offset_x, offset_y;  ///< ... and the spline offsets there
   std::vector<double> inverse_mass;        ///< 1 / sum w m; zero where the face has left the window
+  std::vector<double> moved_mass;          ///< tonne/mm that a force on the marker moves: (sum w m)^2 / sum w^2 m
   std::vector<std::vector<double>> slip;   ///< elastic part of the sliding (mm), one list per frictional contact
   std::size_t size() const { return x.size(); }
 

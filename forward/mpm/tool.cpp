@@ -195,7 +195,8 @@ void follow_face(State& state, double depth, double lift) {
 void press(State& state, const Contact& contact, const Scene& scene, const PressOptions& options) {
   Face& face = surface(state, contact.surface);
   const ToolState& tool = state.tool;
-  const double k_n = options.stiffness, length = state.crack.spacing;
+  const double length = state.crack.spacing;
+  const double softest = 0.25 / (state.step * state.step * state.grid.cell_x);
   const double frame_y = contact.follows_tip ? tool.y : 0.0;
   const Motion motion{tool.speed, contact.follows_tip ? tool.vertical_speed : 0.0};
   const Outline outline = contact.outline(scene, tool.tip_radius);
@@ -204,7 +205,7 @@ void press(State& state, const Contact& contact, const Scene& scene, const Press
 
   struct Hit {
     std::size_t k;
-    double pressure;
+    double pressure, k_n;
     Touch touch;
   };
   std::vector<Hit> hits;
@@ -216,8 +217,11 @@ void press(State& state, const Contact& contact, const Scene& scene, const Press
       if (rubs) face.slip[contact.slip][k] = 0.0;
       continue;
     }
+    // Where stretched material leaves little mass at its surface, the spring is softer, or its own vibration would be
+    // faster than the time step; several markers share that mass.
+    const double k_n = std::min(options.stiffness, softest * face.moved_mass[k]);
     const double pressure = -k_n * touch.distance;
-    hits.push_back({k, pressure, touch});
+    hits.push_back({k, pressure, k_n, touch});
     push(state, face, k, pressure * length * touch.normal_x, pressure * length * touch.normal_y, motion);
     if (blunts)  // a surface that gives way takes work out of the spring
       state.work.tool += pressure * length * (before.touch(x, y).distance - touch.distance);
@@ -238,7 +242,7 @@ void press(State& state, const Contact& contact, const Scene& scene, const Press
     double& slip = face.slip[contact.slip][hit.k];
     const double along_x = -way * hit.touch.normal_y, along_y = way * hit.touch.normal_x;
     const double ratio = std::min(contact.friction, options.shear_cap / mean[hit.k]);
-    const double longest = ratio * hit.pressure / k_n;
+    const double k_n = hit.k_n, longest = ratio * hit.pressure / k_n;
     const double sliding =
         state.step * ((face.velocity_x[hit.k] - motion.x) * along_x + (face.velocity_y[hit.k] - motion.y) * along_y);
     const double trial = slip + sliding;

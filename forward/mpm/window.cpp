@@ -98,8 +98,6 @@ void book_retired(State& state, const laws::Material& material, std::size_t i) {
 void sort_into_batches(State& state, const Scene& scene, const std::vector<Side>& side_of) {
   Particles& p = state.particles;
   const Grid& grid = state.grid;
-  const double left = grid.origin_x + margin * grid.cell_x;
-  const double top = scene.window.above * scene.cut.depth;
   const std::size_t cells = grid.nodes();
   std::vector<std::size_t> bin(p.size());
   std::vector<std::size_t> start(2 * cells + 1, 0);
@@ -107,7 +105,7 @@ void sort_into_batches(State& state, const Scene& scene, const std::vector<Side>
   for (std::size_t i = 0; i < p.size(); ++i) {
     bin[i] = nowhere;
     if (p.volume[i] == 0.0) continue;
-    if (p.x[i] < left || p.y[i] > top) {
+    if (p.x[i] < grid.left || p.y[i] > grid.top) {
       book_retired(state, scene.material, i);
       continue;
     }
@@ -191,6 +189,8 @@ State lay_out(const Scene& scene) {
   // Two node rows below the block's lower end hold it. The crack plane lies midway between two rows: with a row in the
   // plane the faces' nodes get half a cell of material each, and the forces converge three times more slowly.
   grid.origin_y = -(cells_up(scene.window.below) + 1.5) * grid.cell_y;
+  grid.left = grid.origin_x + margin * grid.cell_x;
+  grid.top = scene.window.above * scene.cut.depth;
   const std::size_t nodes = grid.nodes();
   constexpr std::size_t overread = lane_count;  // a row of three nodes is read as eight numbers
   for (VelocityField& field : grid.side) {
@@ -217,6 +217,7 @@ State lay_out(const Scene& scene) {
 
 void shift_window(State& state, const Scene& scene) {
   state.grid.origin_x += state.grid.cell_x;
+  state.grid.left += state.grid.cell_x;
   feed_column(state, scene, state.fed_to);
   sort_into_batches(state, scene, sides(state.particles));
   if (state.particles.has_axes) state.step = stable_step(state, scene);
