@@ -135,6 +135,7 @@ struct Work {
   double tool = 0, mode_I = 0, mode_II = 0, friction = 0, damping = 0;
   double retired_elastic = 0, retired_plastic = 0, retired_kinetic = 0;
   double broken_length = 0;  ///< mm of crack path whose bonds are gone
+  double lost_length = 0;    ///< ... of path that left the window with bonds that still held
   double broken_energy = 0;  ///< what these had taken, N mm/mm
 };
 

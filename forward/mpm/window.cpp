@@ -69,6 +69,8 @@ void retire_markers(State& state) {
          !crack.face[above].is_in(state.grid, gone))
     ++gone;
   if (gone > 0) {
+    for (std::size_t k = 0; k < gone; ++k)
+      if (crack.intact[k]) state.work.lost_length += crack.spacing;
     for (auto* values : {&crack.reference_x, &crack.largest_normal, &crack.largest_shear, &crack.traction_normal,
                          &crack.traction_shear})
       erase_front(*values, gone);

@@ -57,6 +57,14 @@ void judge(CutResult& result, const Scene& scene) {
         "fracture energy per new area is {:.3f} of the law's (allowed 0.92 ... 1.05): the material beside the "
         "plane tore, or the cut is not steady",
         result.fracture_energy_ratio));
+  if (result.lost_length > 0.0)
+    refuse(fmt::format("bonds still held where the window ends behind the tool, along {:.3g} mm: lengthen window.behind, "
+                       "window.above or window.zone",
+                       result.lost_length));
+  if (!(result.room_ahead > 1.5 * scene.cut.depth))
+    refuse(fmt::format("the crack runs to {:.3g} mm from the window's far end (allowed from 1.5 depths of cut): lengthen "
+                       "window.ahead",
+                       result.room_ahead));
   if (!result.steady)
     refuse("no steady force: the two halves of the record differ by more than 1 % and their own scatter, or by 3 %");
   if (!(result.deepest_penetration < 0.25))

@@ -166,6 +166,8 @@ void summarise(CutResult& result, const Recorder& recorder, const State& state, 
   result.branch = result.softening_lead.value > 0.2 * scene.cut.depth ? Branch::bending : Branch::touching;
 
   result.process_zone = process_zone(state.crack, scene.cohesive);
+  result.lost_length = state.work.lost_length;
+  result.room_ahead = scene.window.ahead * scene.cut.depth - result.softening_lead.value;
 
   const double mode_I = history.back().fracture_I - history[from].fracture_I;
   const double fracture = history.back().ledger.fracture - history[from].ledger.fracture;
