@@ -48,6 +48,19 @@ class Document {
   /// The declaration behind a dotted path, or throws InputError as above. `where` begins the message.
   static const Parameter& find_number(std::string_view path, const std::vector<Block>& known, std::string_view where);
 
+  /// The same for a key of any kind that one word can hold, and for the `law` of a block with variants.
+  static Parameter find_parameter(std::string_view path, const std::vector<Block>& known, std::string_view where);
+
+  /// Writes a text, a quantity, a flag ("true") or a block's `law` as a file would hold it. Whether the word is allowed
+  /// says the next `read`. Throws like `set_number`.
+  void set_text(std::string_view path, const std::string& text, const std::vector<Block>& known);
+
+  /// Adds the table at `path`, empty, if it is not there. Asserts that `known` declares it.
+  void add_table(std::string_view path, const std::vector<Block>& known);
+
+  /// Takes the key or table at `path` out, if it is there.
+  void remove(std::string_view path);
+
   /// Canonical text, itself TOML (sorted keys, no comments): equal for documents that differ only in layout; used as a
   /// run's identity.
   std::string canonical() const;
@@ -55,6 +68,8 @@ class Document {
 
  private:
   Document() = default;
+  template <class Value>
+  void set(std::string_view path, Value value_for, const std::vector<Block>& known);
   std::string name_;
   struct Tree;
   std::shared_ptr<const Tree> tree_;

@@ -100,6 +100,32 @@ TEST(Document, APatchedCopyLeavesTheOriginalAlone) {
   EXPECT_EQ(patched.read(blocks()).at("cut").where("depth"), "cut.toml:4:9") << "a patched value keeps its place";
 }
 
+TEST(Document, WordsAreSetAddedAndLeftOut) {
+  Document document = Document::parse(sound, "cut.toml");
+  document.set_text("title", "another", blocks());
+  document.set_text("cut.draft", "false", blocks());
+  document.set_text("cohesive.mode_I.law", "cubic", blocks());
+  Contents contents = document.read(blocks());
+  EXPECT_EQ(contents.at("").text("title"), "another");
+  EXPECT_FALSE(contents.at("cut").flag("draft"));
+  EXPECT_THROW(document.set_text("cut.draft", "perhaps", blocks()), InputError);
+  EXPECT_THROW(document.set_text("cut.observables", "F_c", blocks()), InputError);  // a list is no word
+  document.set_text("cohesive.mode_I.law", "cubik", blocks());
+  EXPECT_THAT([&] { document.read(blocks()); },
+              ::testing::ThrowsMessage<InputError>(HasSubstr("did you mean \"cubic\"?")));
+
+  document.remove("title");
+  document.remove("cohesive.mode_I");
+  document.remove("no.such.thing");
+  contents = document.read(blocks());
+  EXPECT_EQ(contents.at("").text("title"), "untitled");
+  EXPECT_FALSE(contents.has("cohesive.mode_I"));
+  document.add_table("cohesive.mode_I", blocks());
+  document.set_text("cohesive.mode_I.law", "cubic", blocks());
+  document.set_number("cohesive.mode_I.toughness", 1.5, blocks());
+  EXPECT_EQ(document.read(blocks()).at("cohesive.mode_I").number("toughness"), 1.5);
+}
+
 TEST(Document, APatchOutOfRangeIsRefusedWhenItIsRead) {
   Document document = Document::parse(sound, "cut.toml");
   document.set_number("cut.rake", 3.0, blocks());
