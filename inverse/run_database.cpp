@@ -60,6 +60,11 @@ std::size_t RunDatabase::failed() const {
       std::count_if(asked_.begin(), asked_.end(), [&](const std::string& key) { return !known_.at(key).accepted; }));
 }
 
+std::optional<RunRecord> RunDatabase::find(const Document& scene) const {
+  const auto found = known_.find(key(scene));
+  return found == known_.end() ? std::nullopt : std::optional(found->second);
+}
+
 std::optional<forward::CutResult> RunDatabase::recent(const Document& scene) const {
   const std::string wanted = key(scene);
   const auto found =

@@ -55,6 +55,9 @@ class RunDatabase {
   std::size_t simulated() const { return simulated_; }
   std::size_t failed() const;
 
+  /// The record of a run that has ended, now or before; nothing is simulated.
+  std::optional<RunRecord> find(const Document& scene) const;
+
   /// The whole result of a run of this process, while it is still in memory.
   std::optional<forward::CutResult> recent(const Document& scene) const;
 

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "forward/record/result_json.hpp"
+
 namespace kerf::inverse {
 namespace {
 
@@ -46,7 +48,8 @@ RunRecord summarise(const forward::CutResult& result) {
           .accepted = result.accepted,
           .refusals = result.refusals,
           .ledger = result.ledger,
-          .wall_seconds = result.cost.wall_seconds};
+          .wall_seconds = result.cost.wall_seconds,
+          .result = forward::result_json(result)};
 }
 
 RunRecord refused(std::string cause) {
@@ -71,7 +74,8 @@ Json to_json(const RunRecord& r) {
           {"refusals", r.refusals},
           {"ledger", Json::array({number(l.tool_work), number(l.fracture), number(l.plastic), number(l.elastic),
                                   number(l.kinetic), number(l.friction), number(l.damping)})},
-          {"wall_s", number(r.wall_seconds)}};
+          {"wall_s", number(r.wall_seconds)},
+          {"result", r.result}};
 }
 
 RunRecord record_from_json(const Json& json) {
@@ -95,7 +99,8 @@ RunRecord record_from_json(const Json& json) {
                      .kinetic = number_from(l.at(4)),
                      .friction = number_from(l.at(5)),
                      .damping = number_from(l.at(6))},
-          .wall_seconds = number_from(json.at("wall_s"))};
+          .wall_seconds = number_from(json.at("wall_s")),
+          .result = json.at("result")};
 }
 
 }  // namespace kerf::inverse

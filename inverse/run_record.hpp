@@ -8,8 +8,8 @@
 
 namespace kerf::inverse {
 
-/// What a calibration remembers of one simulated cut: everything but its history and its picture. A run that failed is
-/// a value too (`accepted` false, `refusals` in words).
+/// What is remembered of one simulated cut: everything but its history and its picture. A run that failed is a value
+/// too (`accepted` false, `refusals` in words).
 struct RunRecord {
   Estimate F_c, F_t;        ///< N/mm
   Estimate chip_ratio;      ///< chip thickness / depth of cut
@@ -24,6 +24,7 @@ struct RunRecord {
   std::vector<std::string> refusals;
   forward::Ledger ledger;
   double wall_seconds = 0;
+  nlohmann::ordered_json result;  ///< forward::result_json, for tables: all there is to show; null if it never ran
 };
 
 RunRecord summarise(const forward::CutResult& result);

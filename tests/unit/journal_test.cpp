@@ -69,6 +69,7 @@ TEST(Journal, KeepsEveryBitOfARecord) {
   record.ledger.plastic = std::nextafter(1.0, 2.0);
   record.branch = forward::Branch::bending;
   record.refusals = {"a \"quoted\" cause, with µ"};
+  record.result = {{"F_c", {{"value", 0.1 + 0.2}, {"unit", "N/m"}}}, {"chip_ratio", nullptr}};
   const auto text = inverse::to_json(record).dump();
   const inverse::RunRecord back = inverse::record_from_json(nlohmann::ordered_json::parse(text));
   const auto bits = [](double value) { return std::bit_cast<std::uint64_t>(value); };
@@ -81,6 +82,7 @@ TEST(Journal, KeepsEveryBitOfARecord) {
   EXPECT_EQ(bits(back.ledger.plastic), bits(record.ledger.plastic));
   EXPECT_EQ(back.branch, forward::Branch::bending);
   EXPECT_EQ(back.refusals, record.refusals);
+  EXPECT_EQ(back.result, record.result);
 }
 
 /// All numbers of an answer, to be compared bit for bit.
