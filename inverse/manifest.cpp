@@ -38,6 +38,12 @@ Json libraries() {
                                         NLOHMANN_JSON_VERSION_PATCH)}};
 }
 
+Json input(const InputFile& file) {
+  return {{"name", file.name}, {"sha256", file.hash()}};
+}
+
+}  // namespace
+
 double processor_seconds() {
   rusage usage{};
   ::getrusage(RUSAGE_SELF, &usage);
@@ -47,17 +53,9 @@ double processor_seconds() {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-Json input(const InputFile& file) {
-  return {{"name", file.name}, {"sha256", file.hash()}};
-}
-
-}  // namespace
-
-Json manifest(const Job& job, const std::string& code, double wall_seconds) {
+Json code_and_machine(const std::string& code) {
   utsname system{};
   ::uname(&system);
-  Json inputs = Json::array({input(job.source), input(job.scene_file)});
-  for (const InputFile& curve : job.curves) inputs.push_back(input(curve));
   return {{"version", KERF_VERSION},
           {"executable_sha256", code},
           {"compiler", fmt::format("GCC-compatible {}", __VERSION__)},
@@ -65,14 +63,21 @@ Json manifest(const Job& job, const std::string& code, double wall_seconds) {
           {"machine",
            {{"processor", processor()},
             {"cores", ::sysconf(_SC_NPROCESSORS_ONLN)},
-            {"system", fmt::format("{} {}", system.sysname, system.release)}}},
-          {"inputs", std::move(inputs)},
-          {"job", Document::parse(job.source.content, job.source.name).canonical()},
-          {"scene", job.scene.canonical()},
-          {"max_runs", job.budget.max_runs},
-          {"parallel", job.budget.parallel},
-          {"wall_s", wall_seconds},
-          {"processor_s_of_last_session", processor_seconds()}};
+            {"system", fmt::format("{} {}", system.sysname, system.release)}}}};
+}
+
+Json manifest(const Job& job, const std::string& code, double wall_seconds) {
+  Json inputs = Json::array({input(job.source), input(job.scene_file)});
+  for (const InputFile& curve : job.curves) inputs.push_back(input(curve));
+  Json manifest = code_and_machine(code);
+  manifest["inputs"] = std::move(inputs);
+  manifest["job"] = Document::parse(job.source.content, job.source.name).canonical();
+  manifest["scene"] = job.scene.canonical();
+  manifest["max_runs"] = job.budget.max_runs;
+  manifest["parallel"] = job.budget.parallel;
+  manifest["wall_s"] = wall_seconds;
+  manifest["processor_s_of_last_session"] = processor_seconds();
+  return manifest;
 }
 
 }  // namespace kerf::inverse

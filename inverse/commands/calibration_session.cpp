@@ -7,11 +7,11 @@
 
 #include "forward/record/cut_file.hpp"
 #include "forward/record/result_json.hpp"
-#include "forward/run.hpp"
 #include "inverse/calibration.hpp"
 #include "inverse/calibration_json.hpp"
 #include "inverse/closed_form_reduction.hpp"
 #include "inverse/commands/interrupt.hpp"
+#include "inverse/commands/interruptible_run.hpp"
 #include "inverse/manifest.hpp"
 #include "inverse/reduction_json.hpp"
 #include "inverse/statement.hpp"
@@ -24,17 +24,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
-
-forward::CutResult simulate(const forward::Scene& scene) {
-  if (StopOnInterrupt::asked()) throw inverse::Interrupted{};
-  bool stopped = false;
-  forward::CutResult result = forward::run(scene, [&](const forward::Progress&) {
-    stopped = StopOnInterrupt::asked();
-    return !stopped;
-  });
-  if (stopped) throw inverse::Interrupted{};
-  return result;
-}
 
 /// Plain lines on standard error: one per run and per step of the search, with what is left of a batch.
 class ProgressLines {
@@ -90,7 +79,7 @@ std::size_t keep_cuts(const inverse::Folder& folder, const inverse::Calibration&
     std::optional<forward::CutResult> result = database.recent(scene);
     if (!result) {
       fmt::print(stderr, "simulating the cut at depth {:.4g} mm once more to keep it in full\n", job.cuts[index].depth);
-      result = simulate(forward::read_scene(scene));
+      result = run_unless_interrupted(forward::read_scene(scene));
       ++simulated;
     }
     forward::write_cut(fs::path(file).replace_extension(".h5"), scene, *result);
@@ -146,7 +135,7 @@ ExitCode finish(inverse::Folder& folder, const std::string& code, bool json) {
   const inverse::Job& job = folder.job();
   ProgressLines lines(job.budget.max_runs);
   inverse::RunDatabase database(
-      folder.journal(), code, simulate, job.budget.parallel,
+      folder.journal(), code, run_unless_interrupted, job.budget.parallel,
       {.batch_begins = [&](std::size_t runs, double seconds) { lines.batch_begins(runs, seconds); },
        .run_ends = [&](const inverse::RunRequest& request,
                        const inverse::RunRecord& record) { lines.run_ends(request, record); }});

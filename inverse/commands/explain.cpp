@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -10,6 +10,7 @@
 #include "forward/mpm/window.hpp"
 #include "forward/plan.hpp"
 #include "inverse/commands/commands.hpp"
+#include "inverse/commands/expected_cost.hpp"
 
 namespace kerf::commands {
 namespace {
@@ -20,19 +21,6 @@ using forward::State;
 
 constexpr double degrees = 57.29577951308232;
 
-/// Seconds that each stage took over the first steps of the cut: a measurement, not a model.
-std::vector<double> time_stages(State& state, const std::vector<Stage>& stages, int steps) {
-  std::vector<double> seconds(stages.size(), 0.0);
-  for (int step = 0; step < steps; ++step) {
-    for (std::size_t i = 0; i < stages.size(); ++i) {
-      const auto begin = std::chrono::steady_clock::now();
-      stages[i].apply(state);
-      seconds[i] += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    }
-    state.time += state.step;
-  }
-  return seconds;
-}
 
 void print_cut(const Scene& scene) {
   fmt::print("{}\n\n", scene.title);
@@ -95,21 +83,16 @@ void print_absent(const Scene& scene) {
   fmt::print("  with itself: this solver has no such effects\n\n");
 }
 
-/// The ramp costs half its time; the cut may stop anywhere between the two travels.
 void print_cost(const Scene& scene, const State& state, double seconds_per_step) {
-  const auto steps_to = [&](double depths) {
-    return (depths * scene.cut.depth / scene.cut.speed + 0.5 * scene.cut.ramp) / state.step;
-  };
-  const auto particles = static_cast<double>(state.particles.begin[2]);
-  const double least = steps_to(std::min(scene.steady_state.not_before, scene.cut.travel));
-  const double most = steps_to(scene.cut.travel);
+  const ExpectedCost cost = expected_cost(scene, state);
   fmt::print("Expected cost\n");
   fmt::print("  the cut stops between {:g} and {:g} depths of travel, once the standard error of F_c is below {:g} %\n",
              std::min(scene.steady_state.not_before, scene.cut.travel), scene.cut.travel,
              100 * scene.steady_state.tolerance);
   fmt::print(
       "  {:.3g} to {:.3g} steps, {:.2g} to {:.2g} particle-steps, {:.2g} to {:.2g} s at the speed measured now\n",
-      least, most, least * particles, most * particles, least * seconds_per_step, most * seconds_per_step);
+      cost.least_steps, cost.most_steps, cost.least(), cost.most(), cost.least_steps * seconds_per_step,
+      cost.most_steps * seconds_per_step);
 }
 
 void explain(const std::string& file) {
