@@ -1,0 +1,150 @@
+#include "inverse/sweep_file.hpp"
+
+#include <fmt/format.h>
+#include <hdf5.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <system_error>
+
+#include "forward/scene/scene.hpp"
+#include "models/base/atomic_file.hpp"
+#include "models/base/error.hpp"
+
+namespace kerf::inverse {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+/// Anything HDF5 refuses; becomes an InputError that names the file.
+struct Failure {
+  std::string what;
+};
+
+/// One HDF5 identifier, closed when it goes out of scope.
+class Handle {
+ public:
+  using Close = herr_t (*)(hid_t);
+  Handle(hid_t id, Close close, const char* what) : id_(id), close_(close) {
+    if (id_ < 0) throw Failure{what};
+  }
+  Handle(const Handle&) = delete;
+  Handle& operator=(const Handle&) = delete;
+  ~Handle() { close_(id_); }
+  operator hid_t() const { return id_; }
+
+ private:
+  hid_t id_;
+  Close close_;
+};
+
+void check(herr_t status, const char* what) {
+  if (status < 0) throw Failure{what};
+}
+
+/// HDF5 prints its error stack by default; we report one line of our own instead.
+class QuietErrors {
+ public:
+  QuietErrors() {
+    H5Eget_auto2(H5E_DEFAULT, &print_, &data_);
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  }
+  QuietErrors(const QuietErrors&) = delete;
+  QuietErrors& operator=(const QuietErrors&) = delete;
+  ~QuietErrors() { H5Eset_auto2(H5E_DEFAULT, print_, data_); }
+
+ private:
+  H5E_auto2_t print_ = nullptr;
+  void* data_ = nullptr;
+};
+
+hid_t string_type() {
+  const hid_t type = H5Tcopy(H5T_C_S1);
+  if (type < 0 || H5Tset_size(type, H5T_VARIABLE) < 0 || H5Tset_cset(type, H5T_CSET_UTF8) < 0)
+    throw Failure{"string type"};
+  return type;
+}
+
+void write_attribute(hid_t owner, const char* name, const std::string& text) {
+  const Handle type(string_type(), H5Tclose, "string type");
+  const Handle space(H5Screate(H5S_SCALAR), H5Sclose, "attribute space");
+  const Handle attribute(H5Acreate2(owner, name, type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose, "attribute");
+  const char* content = text.c_str();
+  check(H5Awrite(attribute, type, &content), "attribute");
+}
+
+void write_column(hid_t group, const SweepColumn& column) {
+  const hsize_t rows = column.cells.size();
+  const Handle space(H5Screate_simple(1, &rows, nullptr), H5Sclose, "data space");
+  const bool words = std::any_of(column.cells.begin(), column.cells.end(), [](const Json& c) { return c.is_string(); });
+  const Handle type(words ? string_type() : H5Tcopy(H5T_NATIVE_DOUBLE), H5Tclose, "type");
+  const Handle set(H5Dcreate2(group, column.name.c_str(), words ? type : hid_t{H5T_IEEE_F64LE}, space, H5P_DEFAULT,
+                              H5P_DEFAULT, H5P_DEFAULT),
+                   H5Dclose, "dataset");
+  if (words) {
+    std::vector<std::string> texts;
+    for (const Json& cell : column.cells)
+      texts.push_back(cell.is_string() ? cell.get<std::string>() : cell.is_null() ? "" : cell.dump());
+    std::vector<const char*> pointers;
+    pointers.reserve(texts.size());
+    for (const std::string& text : texts) pointers.push_back(text.c_str());
+    check(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, pointers.data()), "dataset");
+  } else {
+    std::vector<double> numbers;
+    for (const Json& cell : column.cells)
+      numbers.push_back(cell.is_number()    ? cell.get<double>()
+                        : cell.is_boolean() ? (cell.get<bool>() ? 1.0 : 0.0)
+                                            : std::nan(""));
+    check(H5Dwrite(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data()), "dataset");
+  }
+  write_attribute(set, "unit", column.unit);
+}
+
+/// Whatever the file of a cut calls its history: a field that is added there comes along by itself.
+void copy_history(hid_t runs, const fs::path& cut_file, const std::string& name) {
+  if (!fs::exists(cut_file)) return;
+  const Handle cut(H5Fopen(cut_file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "file of a cut");
+  check(H5Ocopy(cut, "history", runs, name.c_str(), H5P_DEFAULT, H5P_DEFAULT), "history");
+}
+
+void write_h5(const fs::path& file, const Sweep& sweep, const std::vector<SweepColumn>& columns,
+              const std::vector<fs::path>& cut_files) {
+  const Handle h5(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose, "new file");
+  write_attribute(h5, "title", forward::read_scene(sweep.scene).title);
+  write_attribute(h5, "code_version", KERF_VERSION);
+  write_attribute(h5, "scene", sweep.scene.canonical());
+  {
+    const Handle group(H5Gcreate2(h5, "columns", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose, "group");
+    for (const SweepColumn& column : columns) write_column(group, column);
+  }
+  const Handle runs(H5Gcreate2(h5, "runs", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose, "group");
+  for (std::size_t run = 0; run < cut_files.size(); ++run)
+    copy_history(runs, cut_files[run], fmt::format("{:03}", run + 1));
+  check(H5Fflush(h5, H5F_SCOPE_GLOBAL), "flush");
+}
+
+}  // namespace
+
+void write_sweep(const fs::path& h5, const Sweep& sweep, const std::vector<SweepColumn>& columns,
+                 const std::vector<fs::path>& cut_files) {
+  const fs::path partial = fs::path(h5) += fmt::format(".partial-{}", ::getpid());
+  std::error_code ignored;
+  try {
+    const QuietErrors quiet;
+    if (h5.has_parent_path()) fs::create_directories(h5.parent_path());
+    write_h5(partial, sweep, columns, cut_files);
+    // The same bytes once more, this time flushed to the disk before they take their name.
+    write_atomically(h5, read_file(partial));
+    fs::remove(partial);
+  } catch (const Failure& failure) {
+    fs::remove(partial, ignored);
+    throw InputError(fmt::format("{}: cannot be written (HDF5: {})", h5.string(), failure.what));
+  } catch (const fs::filesystem_error& failure) {
+    fs::remove(partial, ignored);
+    throw InputError(fmt::format("{}: cannot be written: {}", h5.string(), failure.code().message()));
+  }
+}
+
+}  // namespace kerf::inverse
