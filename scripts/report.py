@@ -1,5 +1,7 @@
 #!/usr/bin/python3
-"""Writes the report page of a calibration (a directory) or of one simulated cut (an .h5 file).
+"""Writes the report page of a calibration or a sweep (a directory) or of one simulated cut (an .h5 file).
+
+Of a sweep also its figures, sweep.svg and sweep_intercepts.svg, beside the page.
 
 Exit codes are Kerf's: 0 written, 1 this Python lacks a module, 2 usage, 3 the input is missing or broken.
 """
@@ -46,8 +48,17 @@ def main():
     from report.calibration_page import page_of_calibration
     from report.cut import Unreadable, read_cut
     from report.cut_page import page_of_cut
+    from report.sweep import extrapolations, forces, read_sweep
+    from report.sweep_page import page_of_sweep
     try:
-        if options.target.is_dir():
+        if options.target.is_dir() and (options.target / "request.json").exists():
+            sweep = read_sweep(options.target)
+            page = page_of_sweep(sweep)
+            output = options.output or options.target / "report.html"
+            for name, picture in [("sweep.svg", forces(sweep)), ("sweep_intercepts.svg", extrapolations(sweep))]:
+                if picture:
+                    write_atomically(output.parent / name, picture + "\n")
+        elif options.target.is_dir():
             page = page_of_calibration(read_calibration(options.target))
             output = options.output or options.target / "report.html"
         else:

@@ -31,7 +31,7 @@ def page_of_calibration(calibration):
     _cut(page, calibration)
     _search(page, calibration)
     _cost(page, calibration)
-    _manifest(page, calibration)
+    add_manifest(page, calibration.manifest)
     return page
 
 
@@ -268,9 +268,9 @@ def _duration(seconds):
     return f"{number(seconds)} s" if seconds < 120 else f"{number(seconds / 60, digits=2)} min"
 
 
-def _manifest(page, calibration):
+def add_manifest(page, manifest):
     section = page.section("Manifest")
-    if not calibration.manifest:
+    if not manifest:
         section.missing("manifest.json is not there.")
         return
     rows = []
@@ -291,7 +291,7 @@ def _manifest(page, calibration):
             rows.append([path, html('<span style="overflow-wrap:anywhere">{}</span>', str(value))])
 
     long_texts = []
-    flatten(calibration.manifest, "")
+    flatten(manifest, "")
     section.table(["", ""], rows)
     for name, text in long_texts:
         section.source(name, text)
