@@ -3,6 +3,7 @@
 
 #include "inverse/commands/calibration_session.hpp"
 #include "inverse/commands/commands.hpp"
+#include "inverse/commands/sweep_session.hpp"
 
 namespace kerf::commands {
 
@@ -13,15 +14,23 @@ void add_resume(CLI::App& app, int& exit_code) {
     bool json = false;
   };
   const auto options = std::make_shared<Options>();
-  auto* command = app.add_subcommand("resume", "Go on with a calibration that was stopped or killed");
-  command->add_option("folder", options->folder, "folder of the calibration")->required();
-  command->add_option("--parallel", options->budget.parallel, "simulations at a time")->check(CLI::PositiveNumber);
-  command->add_option("--max-runs", options->budget.max_runs, "simulated cuts at most")->check(CLI::PositiveNumber);
+  auto* command = app.add_subcommand("resume", "Go on with a calibration or sweep that was stopped or killed");
+  command->add_option("folder", options->folder, "folder of the calibration or sweep")->required();
+  command->add_option("-j,--jobs,--parallel", options->budget.parallel, "simulations at a time")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--max-runs", options->budget.max_runs, "simulated cuts at most, of a calibration")
+      ->check(CLI::PositiveNumber);
   command->add_flag("--json", options->json, "print the result as JSON");
-  command->footer(
-      "No finished run is repeated, and the answer is the one an undisturbed calibration gives, to the bit.");
+  command->footer("No finished run is repeated, and the answer is the one an undisturbed session gives, to the bit.");
   command->callback([options, &exit_code] {
     const std::string code = inverse::code_identity();
+    if (inverse::SweepFolder::holds_one(options->folder)) {
+      if (options->budget.max_runs > 0)
+        throw InputError("kerf resume: --max-runs belongs to calibrations; a sweep has all its runs", ExitCode::usage);
+      inverse::SweepFolder folder = inverse::SweepFolder::open(options->folder, options->budget.parallel, code);
+      exit_code = static_cast<int>(run_sweep(folder, code, options->json));
+      return;
+    }
     inverse::Folder folder = inverse::Folder::open(options->folder, options->budget, code);
     exit_code = static_cast<int>(run_session(folder, code, options->json));
   });

@@ -9,12 +9,14 @@
 #include <memory>
 #include <string>
 #include <system_error>
+#include <vector>
 
 #include "forward/record/cut_file.hpp"
 #include "forward/record/result_json.hpp"
 #include "forward/run.hpp"
 #include "inverse/commands/commands.hpp"
 #include "inverse/commands/interrupt.hpp"
+#include "inverse/sweep_axis.hpp"
 #include "models/base/error.hpp"
 #include "models/base/units.hpp"
 
@@ -125,11 +127,13 @@ void print_table(const forward::CutResult& r) {
 
 struct Options {
   std::string scene, output;
+  std::vector<std::string> settings;
   bool json = false;
 };
 
 ExitCode simulate(const Options& options) {
-  const Document document = Document::load(options.scene);
+  Document document = Document::load(options.scene);
+  inverse::apply_settings(options.settings, document, forward::scene_blocks(), "kerf simulate --set");
   const forward::Scene scene = forward::read_scene(document);
   if (!options.output.empty()) require_writable(options.output);
 
@@ -159,6 +163,8 @@ void add_simulate(CLI::App& app, int& exit_code) {
   const auto options = std::make_shared<Options>();
   command->add_option("scene", options->scene, "scene file (TOML)")->required();
   command->add_option("-o,--output", options->output, "keep the cut in this HDF5 file, with .xdmf for ParaView beside");
+  command->add_option("--set", options->settings, "PATH=VALUE, as in tool.rake=30deg: another value than the scene's")
+      ->allow_extra_args(false);
   command->add_flag("--json", options->json, "print the result as JSON");
   command->footer("Exit code 0: accepted. 4: finished, but a test of the result failed (said on stderr). 130: Ctrl-C.");
   command->callback([options, &exit_code] { exit_code = static_cast<int>(simulate(*options)); });
