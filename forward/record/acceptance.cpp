@@ -58,13 +58,20 @@ void judge(CutResult& result, const Scene& scene) {
         "plane tore, or the cut is not steady",
         result.fracture_energy_ratio));
   if (result.lost_length > 0.0)
-    refuse(fmt::format("bonds still held where the window ends behind the tool, along {:.3g} mm: lengthen window.behind, "
-                       "window.above or window.zone",
-                       result.lost_length));
+    refuse(
+        fmt::format("bonds still held where the window ends behind the tool, along {:.3g} mm: lengthen window.behind, "
+                    "window.above or window.zone",
+                    result.lost_length));
   if (!(result.room_ahead > 1.5 * scene.cut.depth))
-    refuse(fmt::format("the crack runs to {:.3g} mm from the window's far end (allowed from 1.5 depths of cut): lengthen "
-                       "window.ahead",
-                       result.room_ahead));
+    refuse(
+        fmt::format("the crack runs to {:.3g} mm from the window's far end (allowed from 1.5 depths of cut): lengthen "
+                    "window.ahead",
+                    result.room_ahead));
+  if (!(result.room_around > 0.5 * scene.cut.depth))
+    refuse(
+        fmt::format("the tool touches the chip {:.3g} mm from an edge where the window cuts it (allowed from half a "
+                    "depth of cut): raise window.behind, window.above or window.zone",
+                    result.room_around));
   if (!result.steady)
     refuse("no steady force: the two halves of the record differ by more than 1 % and their own scatter, or by 3 %");
   if (!(result.deepest_penetration < 0.25))

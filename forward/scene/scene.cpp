@@ -139,8 +139,9 @@ std::vector<Block> declare() {
             number("behind", "1", 1, 100, "length behind the tip, in depths of cut").or_else("3"),
             number("below", "1", 1, 100, "material below the crack plane, in depths of cut").or_else("4"),
             number("above", "1", 1.5, 100, "height up to which the chip is followed, in depths of cut").or_else("4"),
-            number("zone", "mm", 0, 1e2,
-                   "length added ahead, behind and above whatever the depth: room for a bridging zone or a chip breaker")
+            number(
+                "zone", "mm", 0, 1e2,
+                "length added ahead, behind and above whatever the depth: room for a bridging zone or a chip breaker")
                 .or_else("0 mm")},
        .required = true},
       {.path = "resolution",
