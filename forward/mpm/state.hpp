@@ -127,8 +127,8 @@ struct ToolForce {
   std::array<FaceForce, tool_face_count> face;
   double on_work_x = 0, on_work_y = 0;
   double penetration = 0;
-  double room = 1e300;  ///< from the contacts to the nearest edge of the window, mm
-  double release = 0;   ///< energy release rate of a specimen in grips, N/mm
+  double at_edge = 0;  ///< sum of the pressures on the chip near the edges where the window cuts it, N/mm
+  double release = 0;  ///< energy release rate of a specimen in grips, N/mm
 };
 
 /// Work done since the start, N mm/mm; what cannot be read off the state is added up here.
