@@ -37,7 +37,7 @@ struct ForceSample {
   Extension extension;                  ///< of a specimen in grips
   double fracture_I;                    ///< mode I part of ledger.fracture
   double broken_length, broken_energy;  ///< path whose bonds are gone, mm, and what their laws had used up, N mm/mm
-  double room;         ///< least distance of a contact from the edges where the window cuts the chip, mm
+  double at_edge;      ///< part of the normal forces that acts within half a depth of where the window cuts the chip
   double penetration;  ///< deepest of a crack face into the tool, mm
   Ledger ledger;       ///< state at the crossing's end
 };
@@ -81,7 +81,7 @@ struct CutResult {
   double deepest_penetration = 0;    ///< of a crack face into the tool, in cells
   double lost_length = 0;            ///< mm of crack path that left the window with bonds that still held
   double room_ahead = 0;             ///< mm of window ahead of the foremost bond past its peak
-  double room_around = 0;            ///< mm between the contacts and the edges where the window cuts the chip
+  double edge_share = 0;             ///< of the normal forces, near the edges where the window cuts the chip
   bool steady = false;
   double steady_from = 0;  ///< tool travel, mm
   bool accepted = false;

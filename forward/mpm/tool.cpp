@@ -229,7 +229,8 @@ void press(State& state, const Contact& contact, const Scene& scene, const Press
     FaceForce& force = state.force.face[static_cast<std::size_t>(touch.face)];
     force.normal += pressure * length;
     force.contact_length += length;
-    state.force.room = std::min({state.force.room, state.grid.top - face.y[k], face.x[k] - state.grid.left});
+    if (std::min(state.grid.top - face.y[k], face.x[k] - state.grid.left) < 0.5 * scene.cut.depth)
+      state.force.at_edge += pressure * length;
     state.force.penetration = std::max(state.force.penetration, -touch.distance);
   }
   if (!rubs || hits.empty()) return;

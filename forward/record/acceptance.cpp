@@ -67,11 +67,11 @@ void judge(CutResult& result, const Scene& scene) {
         fmt::format("the crack runs to {:.3g} mm from the window's far end (allowed from 1.5 depths of cut): lengthen "
                     "window.ahead",
                     result.room_ahead));
-  if (!(result.room_around > 0.5 * scene.cut.depth))
+  if (!(result.edge_share < 0.02))
     refuse(
-        fmt::format("the tool touches the chip {:.3g} mm from an edge where the window cuts it (allowed from half a "
-                    "depth of cut): raise window.behind, window.above or window.zone",
-                    result.room_around));
+        fmt::format("{:.1f} % of the tool's normal forces act where the window cuts the chip (allowed 2 %): raise "
+                    "window.behind, window.above or window.zone",
+                    100 * result.edge_share));
   if (!result.steady)
     refuse("no steady force: the two halves of the record differ by more than 1 % and their own scatter, or by 3 %");
   if (!(result.deepest_penetration < 0.25))

@@ -86,7 +86,7 @@ void Recorder::add_step(const State& state) {
   }
   sum_.on_work_x += state.force.on_work_x;
   sum_.on_work_y += state.force.on_work_y;
-  sum_.room = std::min(sum_.room, state.force.room);
+  sum_.at_edge += state.force.at_edge;
   sum_.release += state.force.release;
   sum_.penetration = std::max(sum_.penetration, state.force.penetration);
   steps_ += 1.0;
@@ -103,7 +103,7 @@ void Recorder::add_crossing(const State& state, const Scene& scene) {
                      .fracture_I = state.work.mode_I,
                      .broken_length = state.work.broken_length,
                      .broken_energy = state.work.broken_energy,
-                     .room = sum_.room,
+                     .at_edge = sum_.at_edge / steps_,
                      .penetration = sum_.penetration,
                      .ledger = take_stock(state, scene.material)};
   for (FaceForce& face : sample.face) {

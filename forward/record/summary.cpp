@@ -167,8 +167,9 @@ void summarise(CutResult& result, const Recorder& recorder, const State& state, 
 
   result.process_zone = process_zone(state.crack, scene.cohesive);
   result.lost_length = state.work.lost_length;
-  const std::vector<double> room = series(history, &ForceSample::room);
-  result.room_around = *std::min_element(room.begin() + static_cast<std::ptrdiff_t>(from), room.end());
+  double normal = 0.0;
+  for (const FaceResult& face : result.faces) normal += face.normal.value;
+  result.edge_share = normal > 0.0 ? mean(&ForceSample::at_edge).value / normal : 0.0;
   result.room_ahead = scene.window.ahead * scene.cut.depth - result.softening_lead.value;
 
   const double mode_I = history.back().fracture_I - history[from].fracture_I;
