@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace kerf::forward {
 namespace {
 
 /// Sharp: the half-plane through the tip with normal (cos alpha, sin alpha). Blunt: an arc tangent to it and to the
-/// crack plane; the virtual sharp apex stays at the origin, so that the lowest point lies behind it.
+/// crack plane; the virtual sharp apex stays at the origin, so that the lowest point lies behind it. Below the
+/// separation angle the work does not flow along the arc: what stands before it, a dead zone, carries on its tangent.
 Outline rake_face(const Scene& scene, double tip_radius) {
   const double normal_x = std::cos(scene.tool.rake), normal_y = std::sin(scene.tool.rake);
   Outline outline;
@@ -15,7 +17,9 @@ Outline rake_face(const Scene& scene, double tip_radius) {
   if (tip_radius > 0.0) {
     const double centre_x = scene.tool.lowest_point(tip_radius);
     outline.add_round(centre_x, tip_radius, tip_radius, ToolFace::tip);
-    outline.add_plane(centre_x, 0.0, 0.0, -1.0, ToolFace::tip);
+    const double s = std::min(scene.tool.separation, 0.5 * std::numbers::pi + scene.tool.rake);
+    const double wall_x = std::sin(s), wall_y = -std::cos(s);
+    outline.add_plane(centre_x + tip_radius * wall_x, tip_radius + tip_radius * wall_y, wall_x, wall_y, ToolFace::tip);
   }
   return outline;
 }

@@ -57,6 +57,11 @@ std::vector<Block> declare() {
                 .if_given(),
             number("tip_radius", "mm", 0, 10, "radius of a tip that is round on both sides; 0 is sharp")
                 .or_else("0 mm"),
+            number(
+                "separation_angle", "deg", 5, 165,
+                "where the work parts on a round tip, as the angle of the tip's normal from straight down; before the "
+                "arc below it stands a dead zone. Only a tip that touches the crack's tip feels it")
+                .or_else("115 deg"),
             number("blunting", "1", 0.5, 100,
                    "tool travel over which the tip grows round after the notch, in depths of cut; begun blunt, a tool "
                    "never starts to cut")
@@ -195,6 +200,7 @@ Tool read_tool(const Values& tool, double cell) {
   Tool result{.rake = tool.number("rake"),
               .clearance = 12.0 * degree,
               .tip_radius = tool.number("tip_radius"),
+              .separation = tool.number("separation_angle"),
               .blunting = tool.number("blunting")};
   if (tool.has("clearance")) result.clearance = tool.number("clearance");
   if (tool.has("bevel")) {

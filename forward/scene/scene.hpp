@@ -37,10 +37,11 @@ struct Cut {
 };
 
 struct Tool {
-  double rake;            ///< alpha, from the crack plane's normal
-  double clearance;       ///< between clearance face and crack plane
-  double tip_radius = 0;  ///< of a tip rounded on both sides; 0 is sharp
-  double blunting = 5;    ///< travel, in depths, over which the radius grows to its value
+  double rake;              ///< alpha, from the crack plane's normal
+  double clearance;         ///< between clearance face and crack plane
+  double tip_radius = 0;    ///< of a tip rounded on both sides; 0 is sharp
+  double separation = 2.0;  ///< of a round tip's normal from straight down, ahead positive: above it, work flows up
+  double blunting = 5;      ///< travel, in depths, over which the radius grows to its value
 
   /// x of the lowest point of a tip of this radius, behind the apex that it would have if it were sharp.
   double lowest_point(double radius) const;
