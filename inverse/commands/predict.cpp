@@ -125,7 +125,8 @@ void add_predict(CLI::App& app, int& exit_code) {
   };
   const auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("predict", "Cutting force of a closed form");
-  command->add_option("MODEL", options->model, "chip_force, shear_minimised, atkins or plastic_bending")->required();
+  command->add_option("MODEL", options->model, "chip_force, shear_minimised, atkins, plastic_bending or cohesive_beam")
+      ->required();
   command->add_option("KEYS", options->arguments, "key=value, quantities with their unit");
   command->add_flag("--json", options->json, "machine-readable result");
   command->footer(model_help);

@@ -4,6 +4,7 @@
 
 #include "models/chip/atkins.hpp"
 #include "models/chip/chip_force.hpp"
+#include "models/chip/cohesive_beam.hpp"
 #include "models/chip/plastic_bending.hpp"
 #include "models/chip/shear_minimised.hpp"
 
@@ -11,10 +12,7 @@ namespace kerf::chip {
 
 const std::vector<ClosedForm>& closed_forms() {
   static const std::vector<ClosedForm> all = {
-      chip_force_model(),
-      shear_minimised_model(),
-      atkins_model(),
-      plastic_bending_model(),
+      chip_force_model(), shear_minimised_model(), atkins_model(), plastic_bending_model(), cohesive_beam_model(),
   };
   return all;
 }
