@@ -158,4 +158,10 @@ struct State {
   std::string breakdown;      ///< why the run cannot go on; empty while it can
 };
 
+/// The stiffest penalty spring (MPa/mm) that the time step can follow on a marker that moves this mass: where stretched
+/// material leaves little mass at its surface, its vibration would be faster. Several markers share the mass.
+inline double stiffest_spring(const State& state, double moved_mass) {
+  return 0.25 * moved_mass / (state.step * state.step * state.grid.cell_x);
+}
+
 }  // namespace kerf::forward

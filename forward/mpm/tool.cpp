@@ -200,7 +200,6 @@ void press(State& state, const Contact& contact, const Scene& scene, const Press
   Face& face = surface(state, contact.surface);
   const ToolState& tool = state.tool;
   const double length = state.crack.spacing;
-  const double softest = 0.25 / (state.step * state.step * state.grid.cell_x);
   const double frame_y = contact.follows_tip ? tool.y : 0.0;
   const Motion motion{tool.speed, contact.follows_tip ? tool.vertical_speed : 0.0};
   const Outline outline = contact.outline(scene, tool.tip_radius);
@@ -221,9 +220,7 @@ void press(State& state, const Contact& contact, const Scene& scene, const Press
       if (rubs) face.slip[contact.slip][k] = 0.0;
       continue;
     }
-    // Where stretched material leaves little mass at its surface, the spring is softer, or its own vibration would be
-    // faster than the time step; several markers share that mass.
-    const double k_n = std::min(options.stiffness, softest * face.moved_mass[k]);
+    const double k_n = std::min(options.stiffness, stiffest_spring(state, face.moved_mass[k]));
     const double pressure = -k_n * touch.distance;
     hits.push_back({k, pressure, k_n, touch});
     push(state, face, k, pressure * length * touch.normal_x, pressure * length * touch.normal_y, motion);

@@ -33,11 +33,12 @@ Ledger take_stock(const State& state, const laws::Material& material) {
 ChipShape measure_chip(const State& state, double depth) {
   const Particles& p = state.particles;
   const double low = 1.25 * depth, high = 2.75 * depth, middle = 0.5 * (low + high);
+  const double ahead = state.tool.x + 2.5 * depth;  // further on, a curled chip comes back
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   Eigen::Vector3d moments = Eigen::Vector3d::Zero();
   const auto each_in_chip = [&](auto&& visit) {
     for (std::size_t i = p.begin[above]; i < p.begin[above + 1]; ++i)
-      if (p.volume[i] > 0.0 && p.y[i] > low && p.y[i] < high) visit(i, (p.y[i] - middle) / depth);
+      if (p.volume[i] > 0.0 && p.y[i] > low && p.y[i] < high && p.x[i] < ahead) visit(i, (p.y[i] - middle) / depth);
   };
   std::size_t count = 0;
   each_in_chip([&](std::size_t i, double eta) {

@@ -112,7 +112,10 @@ def chip_picture(cut):
                         linewidths=0, **colours)
     for points in cut.faces.values():
         shown = (points[:, 0] > left) & (points[:, 0] < right) & (points[:, 1] < y.max())  # not past the chip's end
-        axes.plot(points[shown, 0], points[shown, 1], color=WARM, linewidth=1.2)
+        line = np.where(shown[:, None], points, np.nan)
+        gaps = np.linalg.norm(np.diff(points, axis=0), axis=1) > 4 * spacing  # where markers have left the window
+        line[1:][gaps] = np.nan
+        axes.plot(line[:, 0], line[:, 1], color=WARM, linewidth=1.2)
     for outline in _tool_outlines(tool, left, right, top, bottom):
         axes.add_patch(Polygon(outline, closed=True, facecolor="#f4f1ea", edgecolor=INK, linewidth=1.2, zorder=0.5))
     inward = sum(_tool_faces(tool))  # half-way between the rake face and the clearance face

@@ -1,0 +1,39 @@
+#!/usr/bin/env bash
+# The virtual experiments of the talk (2013) and of the bench plane (2016), one sweep each, and the README's figures of
+# them. Hours on a laptop; resumable: what was simulated before is taken from results/experiments.
+# Usage: scripts/virtual_experiments.sh [NAME...]     only these sweeps
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+scenes=data/scenes
+wanted=("$@")
+sweep() {  # NAME SCENE AXES...
+  local name=$1 scene=$2
+  [[ ${#wanted[@]} -eq 0 || " ${wanted[*]} " == *" $name "* ]] || return 0
+  echo "== $name"
+  # 4: some runs were refused, and the table says why.
+  build/release/kerf sweep "$scenes/$scene.toml" "${@:3}" -o "results/experiments/$name" || [[ $? -eq 4 ]]
+}
+
+strength=cohesive.mode_I.strength+cohesive.mode_II.strength
+toughness=cohesive.mode_I.toughness+cohesive.mode_II.toughness
+depths=cut.depth=0.1,0.2,0.3,0.4,0.5mm
+
+sweep talk verification_45 tool.rake=15,30,45deg cut.depth=0.25,0.5,1,2mm cut.travel=16
+sweep talk_hardening verification_hardening_45 tool.rake=15,30,45deg cut.depth=0.25,0.5,1,2mm cut.travel=16
+sweep talk_strength verification_45 $strength=15,20,30,40,60,80MPa
+sweep talk_toughness verification_45 $toughness=0.5,1,2,3,4kJ/m^2
+sweep talk_rake verification_45 tool.rake=10,20,30,40,50,60deg cut.travel=14
+sweep talk_friction friction_45 friction.coefficient=0,0.1,0.2,0.3,0.4,0.5,0.6
+sweep talk_edge verification_45 cut.depth=0.25,0.5,1mm edge_contact.press_in=-,0.01 edge_contact.edge_radius=1 \
+  cut.travel=12 steady_state.not_before=9
+sweep wood_rl wood_rl --zip $depths window.zone=0.6,1.2,2,2.5,3mm
+sweep wood_tl wood_tl_cut bridging.tool=cuts,ignores $depths
+sweep plane_m4 plane_breaker friction.coefficient=-,0.3 $depths steady_state.not_before=25
+sweep plane_m12 plane_breaker sole.opening=1.2mm sole.opening_in_depths=- $depths steady_state.not_before=25
+sweep plane_mouth plane_breaker sole.opening_in_depths=12,4,2,1.5 steady_state.not_before=25
+sweep plane_tip plane_breaker tool.tip_radius=0,0.12,0.24,0.48mm steady_state.not_before=25
+sweep plane_angle plane_breaker chip_breaker.angle=0,-10,-20deg steady_state.not_before=25
+sweep plane_bevel plane_breaker tool.bevel=25,35,44deg steady_state.not_before=25
+
+scripts/figures.py results/experiments data/figures
