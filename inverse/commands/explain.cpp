@@ -21,7 +21,6 @@ using forward::State;
 
 constexpr double degrees = 57.29577951308232;
 
-
 void print_cut(const Scene& scene) {
   fmt::print("{}\n\n", scene.title);
   fmt::print("A layer of {:g} mm is cut at {:g} m/s by a rigid tool with a rake angle of {:g} deg. The work is an\n",
@@ -79,8 +78,9 @@ void print_absent(const Scene& scene) {
   if (!scene.bridging) fmt::print("  bonds cut by the tool's edge: the scene has no [bridging]\n");
   if (!scene.chip_breaker) fmt::print("  a chip breaker: the scene has no [chip_breaker]\n");
   if (!scene.sole) fmt::print("  the sole of a plane: the scene has no [sole]\n");
-  fmt::print("  heat, rate dependence, a deforming tool, a crack that leaves its plane, contact of the chip\n");
-  fmt::print("  with itself: this solver has no such effects\n\n");
+  if (!scene.nose_bar) fmt::print("  a nose bar: the scene has no [nose_bar]\n");
+  if (!scene.self_contact) fmt::print("  a curled chip that touches itself: the scene has no [self_contact]\n");
+  fmt::print("  heat, rate dependence, a deforming tool, a crack that leaves its plane: no such effects here\n\n");
 }
 
 void print_cost(const Scene& scene, const State& state, double seconds_per_step) {

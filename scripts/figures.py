@@ -1,0 +1,232 @@
+#!/usr/bin/python3
+"""Draws the README's figures of the virtual experiments from the sweeps' tables.
+
+Usage: scripts/figures.py RESULTS OUTPUT     RESULTS/NAME/sweep.csv as scripts/virtual_experiments.sh leaves them
+"""
+
+import csv
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "scripts"))
+import numpy as np  # noqa: E402
+from report.style import ACCENT, ACCENT_LIGHT, INK, QUIET, SAND, WARM, WARM_LIGHT, figure, light_grid  # noqa: E402
+
+# What the paper prints (Nairn 2016): forces in J/m^2 against depth in mm for a chip breaker and a mouth of 1.2 mm.
+PAPER_EXPONENTIAL = (233.0, 6.72)
+POLYMER = ["yield_stress=25MPa", "toughness=2000J/m^2"]
+
+
+def table(results, name):
+    """The rows of a sweep, numbers as numbers, units off the column names; empty when the sweep was not run."""
+    file = results / name / "sweep.csv"
+    if not file.exists():
+        return []
+    with open(file, newline="") as stream:
+        return [{key.split("[")[0]: _number(value) for key, value in row.items()} for row in csv.DictReader(stream)]
+
+
+def _number(text):
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+def predict(model, *keys):
+    """F_c of a closed form in N/m; None where the model says it does not hold."""
+    done = subprocess.run([ROOT / "build/release/kerf", "predict", model, "--json", *keys], capture_output=True, text=True)
+    if done.returncode:
+        return None
+    answer = json.loads(done.stdout)
+    return answer["F_c"]["value"] if answer["valid"] else None
+
+
+def points(axes, rows, x, colour, label, y="F_c", scale=1e-3):
+    """Accepted runs filled (bending: diamonds), refused ones open; joined by a thin line."""
+    kept = [row for row in rows if isinstance(row[y], float)]
+    axes.plot([row[x] for row in kept if row["verdict"] == "accepted"],
+              [row[y] * scale for row in kept if row["verdict"] == "accepted"], color=colour, linewidth=1, alpha=0.6)
+    for row in kept:
+        axes.errorbar(row[x], row[y] * scale, 2 * row[y + "_se"] * scale if y + "_se" in row else None,
+                      fmt="D" if row["branch"] == "bending" else "o", markersize=6, color=colour, ecolor=colour,
+                      markerfacecolor=colour if row["verdict"] == "accepted" else "white", zorder=3)
+    axes.plot([], [], "o-", color=colour, label=label)
+
+
+def curve(axes, xs, values, colour, style):
+    pairs = [(x, value * 1e-3) for x, value in zip(xs, values) if value is not None]
+    if pairs:
+        axes.plot(*zip(*pairs), color=colour, linestyle=style, linewidth=1.3)
+
+
+def talk(results):
+    fig, axes = figure(900, 400, 1, 2, sharey=True)
+    depths = np.linspace(0.05, 2, 30)
+    for ax, name, title, hardening in zip(axes, ("talk", "talk_hardening"), ("perfectly plastic", "linear hardening"),
+                                          (0, 0.05)):
+        light_grid(ax)
+        rows = table(results, name)
+        for rake, colour in ((15, WARM), (30, SAND), (45, ACCENT)):
+            mine = [row for row in rows if row["tool.rake"] == rake]
+            points(ax, mine, "cut.depth", colour, f"rake {rake}°")
+            if not hardening:
+                curve(ax, depths, [predict("shear_minimised", f"depth={h}mm", f"rake={rake}deg", "toughness=2000J/m^2",
+                                           f"yield_stress={25 * 2 / 3**0.5}MPa") for h in depths], colour, "--")
+            curve(ax, depths, [predict("plastic_bending", f"depth={h}mm", f"rake={rake}deg", *POLYMER,
+                                       "elastic_modulus=1000MPa", f"hardening_ratio={hardening}") for h in depths],
+                  colour, ":")
+            deep = np.linspace(0.1, 2, 11)
+            curve(ax, deep, [predict("cohesive_beam", f"depth={h}mm", f"rake={rake}deg", *POLYMER, "strength=40MPa",
+                                     "elastic_modulus=1000MPa", f"hardening_ratio={hardening}") for h in deep],
+                  colour, "-.")
+        ax.set_xlabel("depth of cut, mm")
+        ax.set_title(title)
+        ax.set_ylim(0, 32)
+        ax.set_xlim(0, 2.1)
+    axes[0].set_ylabel("F_c, N/mm")
+    axes[0].plot([], [], color=QUIET, linestyle="--", linewidth=1.3, label="shear plane, (4)")
+    axes[1].plot([], [], color=QUIET, linestyle=":", linewidth=1.3, label="plastic bending, (5–6)")
+    axes[1].plot([], [], color=QUIET, linestyle="-.", linewidth=1.3, label="beam on its cohesive foundation")
+    axes[1].plot([], [], "D", color=QUIET, label="crack ahead of the tool")
+    axes[0].legend(loc="upper left")
+    axes[1].legend(loc="upper left")
+    return fig
+
+
+def effects(results):
+    fig, axes = figure(900, 520, 2, 2)
+    for ax, name, x, label in ((axes[0, 0], "talk_strength", "cohesive.mode_I.strength+cohesive.mode_II.strength",
+                                "cohesive strength, MPa"),
+                               (axes[0, 1], "talk_toughness", "cohesive.mode_I.toughness+cohesive.mode_II.toughness",
+                                "toughness, kJ/m²"),
+                               (axes[1, 0], "talk_rake", "tool.rake", "rake angle, deg"),
+                               (axes[1, 1], "talk_friction", "friction.coefficient", "coefficient of friction")):
+        light_grid(ax)
+        points(ax, table(results, name), x, ACCENT, "simulated")
+        ax.set_xlabel(label)
+        ax.set_ylabel("F_c, N/mm")
+        ax.set_ylim(0, None)
+    curve(axes[0, 1], G := np.linspace(0.2, 4, 20),
+          [predict("shear_minimised", "depth=0.5mm", "rake=45deg", f"toughness={g}kJ/m^2", "yield_stress=28.87MPa")
+           for g in G], QUIET, "--")
+    curve(axes[1, 0], R := np.linspace(5, 60, 23),
+          [predict("shear_minimised", "depth=0.5mm", f"rake={r}deg", "toughness=2kJ/m^2", "yield_stress=28.87MPa")
+           for r in R], QUIET, "--")
+    curve(axes[1, 1], M := np.linspace(0, 0.6, 13),
+          [predict("shear_minimised", "depth=0.5mm", "rake=45deg", "toughness=2kJ/m^2", "yield_stress=28.87MPa",
+                   f"friction={m}") for m in M], QUIET, "--")
+    axes[0, 1].plot([], [], color=QUIET, linestyle="--", linewidth=1.3, label="shear plane, (4)")
+    axes[0, 1].legend(loc="upper left")
+    return fig
+
+
+def bottom(results):
+    """F_t against F_c with and without the force on the tool's bottom; Eq. (1) with the simulated bottom force."""
+    fig, ax = figure(520, 400)
+    light_grid(ax)
+    for pressed, colour, label in ((False, ACCENT, "sharp edge"), (True, WARM, "worn edge")):
+        rows = [row for row in table(results, "talk_edge") if (row["edge_contact.press_in"] != "-") == pressed]
+        rows = [row for row in rows if row["verdict"] == "accepted"]
+        if not rows:
+            continue
+        force = np.array([row["F_c"] for row in rows]) * 1e-3
+        ax.plot(force, [row["F_t"] * 1e-3 for row in rows], "o", color=colour, label=label)
+        edge = np.array([row["faces.bottom_normal"] for row in rows]) * 1e-3
+        order = np.argsort(force)
+        ax.plot(force[order], (-force + edge)[order], color=colour, linewidth=1.2, linestyle="--")
+    ax.plot([], [], color=QUIET, linestyle="--", linewidth=1.2, label="F_t = Z F_c + (1 − μZ) F_b")
+    ax.set_xlabel("F_c, N/mm")
+    ax.set_ylabel("F_t, N/mm")
+    ax.legend(loc="lower left")
+    return fig
+
+
+def wood(results):
+    fig, (left, right) = figure(900, 400, 1, 2)
+    rl = table(results, "wood_rl")
+    light_grid(left)
+    points(left, rl, "cut.depth", ACCENT, "simulated", scale=1)
+    keys = ["rake=45deg", "elastic_modulus=14500MPa", "plane=stress", "yield_stress=100MPa", "root_rotation=1.586",
+            "poisson_ratio=0.37", "toughness=158J/m^2"]
+    depths = np.linspace(0.05, 0.5, 19)
+    for a, colour in ((0, QUIET), (0.3, SAND)):
+        values = [predict("plastic_bending", f"depth={d}mm", *keys, f"hardening_ratio={a}") for d in depths]
+        pairs = [(d, v) for d, v in zip(depths, values) if v is not None]
+        if pairs:
+            left.plot(*zip(*pairs), color=colour, linestyle=":", label=f"plastic bending (5–6), a = {a}")
+    beam = ["rake=45deg", "elastic_modulus=14500MPa", "modulus_across=960MPa", "shear_modulus=830MPa", "plane=stress",
+            "poisson_ratio=0.087", "yield_stress=100MPa", "shape=sawtooth", "strength=4MPa", "toughness=158J/m^2",
+            "peak=0.1", "shear_shape=sawtooth", "shear_strength=6.24MPa", "shear_toughness=474J/m^2", "shear_peak=0.1"]
+    depths = np.linspace(0.1, 0.5, 9)
+    values = [predict("cohesive_beam", f"depth={d}mm", *beam) for d in depths]
+    pairs = [(d, v) for d, v in zip(depths, values) if v is not None]
+    if pairs:
+        left.plot(*zip(*pairs), color=WARM, linestyle="--", label="beam on its cohesive foundation")
+    for row in rl:
+        left.annotate(f"{100 * row['mode_I_fraction']:.0f} %", (row["cut.depth"], row["F_c"]), xytext=(0, -18),
+                      textcoords="offset points", ha="center", fontsize=10, color=QUIET)
+    left.set_title("RL, no bridging (share of mode I below the points)")
+    tl = table(results, "wood_tl")
+    light_grid(right)
+    for what, colour, level, name in (("cuts", ACCENT, 215, "G_init"), ("ignores", WARM, 620, "G_total")):
+        rows = [row for row in tl if row["bridging.tool"] == what]
+        points(right, rows, "cut.depth", colour, f"the edge {what} bridging fibres", scale=1)
+        right.axhline(level, color=colour, linewidth=0.8, alpha=0.7)
+        right.text(0.5, level + 12, name, ha="right", color=colour, fontsize=10.5)
+        if len(rows) >= 3:
+            fit = np.polyfit([row["cut.depth"] for row in rows], [row["F_c"] for row in rows], 2)
+            d = np.linspace(0, rows[0]["cut.depth"], 20)
+            right.plot(d, np.polyval(fit, d), color=colour, linestyle="--", linewidth=1.2)
+    right.set_title("TL, quadratic extrapolation to zero depth")
+    for ax in (left, right):
+        ax.set_xlabel("depth of cut, mm")
+        ax.set_ylim(0, None)
+        ax.set_xlim(0, 0.53)
+        ax.legend(loc="upper left" if ax is right else "lower right", fontsize=10)
+    left.set_ylabel("F_c, N/m")
+    return fig
+
+
+def plane(results):
+    fig, (left, right) = figure(900, 400, 1, 2)
+    light_grid(left)
+    points(left, table(results, "plane_m12"), "cut.depth", ACCENT, "mouth 1.2 mm", scale=1)
+    m4 = table(results, "plane_m4")
+    for friction, colour, label in (("-", WARM, "mouth 4 d"), (0.3, INK, "mouth 4 d, μ = 0.3")):
+        points(left, [row for row in m4 if row["friction.coefficient"] == friction], "cut.depth", colour, label, scale=1)
+    d = np.linspace(0.05, 0.5, 40)
+    left.plot(d, PAPER_EXPONENTIAL[0] * np.exp(PAPER_EXPONENTIAL[1] * d), color=QUIET, linestyle="--", linewidth=1.2,
+              label="published fit, 233 exp(6.72 d)")
+    left.set_xlabel("depth of cut, mm")
+    left.set_ylabel("F_c, N/m")
+    left.set_ylim(0, 9000)
+    left.legend(loc="upper left", fontsize=10)
+    light_grid(right)
+    tip = [row for row in table(results, "plane_tip") if isinstance(row["F_c"], float)]
+    points(right, tip, "tool.tip_radius", ACCENT, "F_c", scale=1)
+    points(right, tip, "tool.tip_radius", WARM, "F_t", y="F_t", scale=1)
+    right.axhline(0, color=QUIET, linewidth=0.8)
+    right.set_xlabel("edge radius, mm")
+    right.set_ylabel("force per width, N/m")
+    right.legend(loc="center right")
+    return fig
+
+
+FIGURES = {"talk_forces": talk, "talk_effects": effects, "bottom_force": bottom, "wood_forces": wood, "plane_forces": plane}
+
+
+def main():
+    results, output = Path(sys.argv[1]), Path(sys.argv[2])
+    for name, draw in FIGURES.items():
+        fig = draw(results)
+        file = output / f"{name}.png"
+        fig.savefig(file, dpi=110, facecolor="white")
+        print(file)
+
+
+if __name__ == "__main__":
+    main()
