@@ -128,9 +128,13 @@ def bottom(results):
     """F_t against F_c with and without the force on the tool's bottom; Eq. (1) with the simulated bottom force."""
     fig, ax = figure(520, 400)
     light_grid(ax)
-    for pressed, colour, label in ((False, ACCENT, "sharp edge"), (True, WARM, "worn edge")):
-        rows = [row for row in table(results, "talk_edge") if (row["edge_contact.press_in"] != "-") == pressed]
-        rows = [row for row in rows if row["verdict"] == "accepted"]
+    sharp = [row for row in table(results, "talk") if row["tool.rake"] == 45]
+    worn = table(results, "talk_edge")
+    sets = [(sharp, ACCENT, "sharp edge")] + [
+        ([row for row in worn if row["edge_contact.press_in"] == press_in], colour, f"edge pressed in {press_in:g} h")
+        for press_in, colour in ((0.005, SAND), (0.01, WARM), (0.02, INK))]
+    for rows, colour, label in sets:
+        rows = [row for row in rows if row["verdict"] == "accepted" and row["branch"] == "touching"]
         if not rows:
             continue
         force = np.array([row["F_c"] for row in rows]) * 1e-3

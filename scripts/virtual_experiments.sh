@@ -25,15 +25,15 @@ sweep talk_strength verification_45 $strength=15,20,30,40,60,80MPa
 sweep talk_toughness verification_45 $toughness=0.5,1,2,3,4kJ/m^2
 sweep talk_rake verification_45 tool.rake=10,20,30,40,50,60deg cut.travel=14
 sweep talk_friction friction_45 friction.coefficient=0,0.1,0.2,0.3,0.4,0.5,0.6
-sweep talk_edge verification_45 cut.depth=0.25,0.5,1mm edge_contact.press_in=-,0.01 edge_contact.edge_radius=1 \
+sweep talk_edge verification_45 cut.depth=0.25,0.5,1mm edge_contact.press_in=0.005,0.01,0.02 edge_contact.edge_radius=1 \
   cut.travel=12 steady_state.not_before=9
 sweep wood_rl wood_rl --zip $depths window.zone=0.6,1.2,2,2.5,3mm
 sweep wood_tl wood_tl_cut bridging.tool=cuts,ignores $depths
-sweep plane_m4 plane_breaker friction.coefficient=-,0.3 $depths steady_state.not_before=25
-sweep plane_m12 plane_breaker sole.opening=1.2mm sole.opening_in_depths=- $depths steady_state.not_before=25
-sweep plane_mouth plane_breaker sole.opening_in_depths=12,4,2,1.5 steady_state.not_before=25
-sweep plane_tip plane_breaker tool.tip_radius=0,0.12,0.24,0.48mm steady_state.not_before=25
-sweep plane_angle plane_breaker chip_breaker.angle=0,-10,-20deg steady_state.not_before=25
-sweep plane_bevel plane_breaker tool.bevel=25,35,44deg steady_state.not_before=25
+sweep plane_m4 plane_breaker friction.coefficient=-,0.3 $depths steady_state.not_before=22 cut.travel=35
+sweep plane_m12 plane_breaker sole.opening=1.2mm sole.opening_in_depths=- $depths steady_state.not_before=22 cut.travel=35
+sweep plane_mouth plane_breaker sole.opening_in_depths=12,4,2,1.5 steady_state.not_before=22 cut.travel=35
+sweep plane_tip plane_breaker tool.tip_radius=0,0.12,0.24,0.48mm steady_state.not_before=22 cut.travel=35
+sweep plane_angle plane_breaker chip_breaker.angle=0,-10,-20deg steady_state.not_before=22 cut.travel=35
+sweep plane_bevel plane_breaker tool.bevel=25,35,44deg steady_state.not_before=22 cut.travel=35
 
 scripts/figures.py results/experiments data/figures
