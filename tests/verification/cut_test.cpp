@@ -5,16 +5,12 @@
 #include <numbers>
 
 #include "forward/run.hpp"
+#include "tests/shipped_scene.hpp"
 
 namespace kerf::forward {
 namespace {
 
-/// A shipped scene with some of its keys replaced: {{"cut.depth", 0.5}, ...} in consistent units.
-Scene shipped(const std::string& name, const std::vector<std::pair<std::string, double>>& changes = {}) {
-  Document document = Document::load(std::string(KERF_SOURCE_DIR "/data/scenes/") + name + ".toml");
-  for (const auto& [path, value] : changes) document.set_number(path, value, scene_blocks());
-  return read_scene(document);
-}
+using kerf::testing::shipped;
 
 void expect_accepted(const CutResult& result) {
   EXPECT_TRUE(result.accepted);
