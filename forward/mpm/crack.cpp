@@ -88,11 +88,10 @@ Bond decoupled(const Cohesive& law, double normal, double shear, double largest_
           std::pow(share_I, law.exponent_n) + std::pow(share_II, law.exponent_m) >= 1.0};
 }
 
-/// Both modes follow their laws at one common share of the critical openings (Tvergaard 1990).
-Bond coupled(const Cohesive& law, double normal, double shear, double largest_normal, double largest_shear) {
+/// Both modes follow their laws at one common share of the critical openings, the largest so far (Tvergaard 1990).
+Bond coupled(const Cohesive& law, double normal, double shear, double& most) {
   const double critical_I = law.mode_I->critical_opening(), critical_II = law.mode_II->critical_opening();
-  const double now = std::hypot(normal / critical_I, shear / critical_II);
-  const double most = std::max(now, std::hypot(largest_normal / critical_I, largest_shear / critical_II));
+  most = std::max(most, std::hypot(normal / critical_I, shear / critical_II));
   if (most == 0.0) return {0.0, 0.0, false};
   return {law.mode_I->traction(most * critical_I) * normal / critical_I / most,
           law.mode_II->traction(most * critical_II) * shear / critical_II / most, most >= 1.0};
@@ -116,7 +115,7 @@ void pull_faces(State& state, const Cohesive& cohesive) {
     const double opening = std::max(upper.y[k] - lower.y[k], 0.0), shear = upper.x[k] - lower.x[k];
     double &largest_normal = crack.largest_normal[k], &largest_shear = crack.largest_shear[k];
     const Bond bond = cohesive.mixed_mode == MixedMode::coupled
-                          ? coupled(cohesive, opening, std::abs(shear), largest_normal, largest_shear)
+                          ? coupled(cohesive, opening, std::abs(shear), crack.largest_share[k])
                           : decoupled(cohesive, opening, std::abs(shear), largest_normal, largest_shear);
     const double normal_traction = bond.normal, shear_traction = std::copysign(bond.shear, shear);
     largest_normal = std::max(largest_normal, opening);
@@ -128,6 +127,7 @@ void pull_faces(State& state, const Cohesive& cohesive) {
         0.5 * (shear_traction + crack.traction_shear[k]) * dt * (upper.velocity_x[k] - lower.velocity_x[k]) * length;
     state.work.mode_I += work_I;
     state.work.mode_II += work_II;
+    crack.taken[k] += (work_I + work_II) / length;
     crack.traction_normal[k] = normal_traction;
     crack.traction_shear[k] = shear_traction;
     if (bond.fails) {
@@ -141,6 +141,7 @@ void pull_faces(State& state, const Cohesive& cohesive) {
 void break_bond(State& state, const Cohesive& cohesive, std::size_t k) {
   Crack& crack = state.crack;
   // What a bond has taken: the area up to its largest opening, less what it gave back since, on the way to the origin.
+  // Coupled laws have no such area, the work depends on the way.
   const auto taken = [](const laws::TractionLaw& law, double opening, double largest) {
     if (largest == 0.0) return 0.0;
     const double share = std::min(opening / largest, 1.0);
@@ -151,8 +152,10 @@ void break_bond(State& state, const Cohesive& cohesive, std::size_t k) {
   crack.intact[k] = 0;
   crack.front = std::max(crack.front, crack.reference_x[k]);
   state.work.broken_length += crack.spacing;
-  state.work.broken_energy += crack.spacing * (taken(*cohesive.mode_I, normal, crack.largest_normal[k]) +
-                                               taken(*cohesive.mode_II, shear, crack.largest_shear[k]));
+  state.work.broken_energy += crack.spacing * (cohesive.mixed_mode == MixedMode::coupled
+                                                   ? crack.taken[k]
+                                                   : taken(*cohesive.mode_I, normal, crack.largest_normal[k]) +
+                                                         taken(*cohesive.mode_II, shear, crack.largest_shear[k]));
 }
 
 void close_faces(State& state, double stiffness) {

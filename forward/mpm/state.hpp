@@ -110,10 +110,16 @@ struct Crack {
   std::array<Face, 2> face;
   std::vector<double> reference_x;
   std::vector<double> largest_normal, largest_shear;  ///< openings so far, mm
+  std::vector<double> largest_share;                  ///< of the critical openings so far, where the laws are coupled
   std::vector<double> traction_normal, traction_shear;
+  std::vector<double> taken;  ///< work of the tractions, N/mm
   std::vector<std::uint8_t> intact;
   double spacing = 0;
   double front = 0;  ///< reference position of the foremost broken pair
+  /// What a pair remembers; zero to begin with.
+  std::array<std::vector<double>*, 6> memory() {
+    return {&largest_normal, &largest_shear, &largest_share, &traction_normal, &traction_shear, &taken};
+  }
   std::size_t size() const { return reference_x.size(); }
 };
 

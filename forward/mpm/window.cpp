@@ -24,8 +24,7 @@ void add_pair(Crack& crack, double at, double upper_x, double upper_y, bool inta
   crack.reference_x.push_back(at);
   crack.intact.push_back(intact);
   if (!intact) crack.front = std::max(crack.front, at);
-  for (auto* values : {&crack.largest_normal, &crack.largest_shear, &crack.traction_normal, &crack.traction_shear})
-    values->push_back(0.0);
+  for (auto* values : crack.memory()) values->push_back(0.0);
   crack.face[below].add(at, 0.0);
   crack.face[above].add(upper_x, upper_y);
 }
@@ -71,9 +70,8 @@ void retire_markers(State& state) {
   if (gone > 0) {
     for (std::size_t k = 0; k < gone; ++k)
       if (crack.intact[k]) state.work.lost_length += crack.spacing;
-    for (auto* values : {&crack.reference_x, &crack.largest_normal, &crack.largest_shear, &crack.traction_normal,
-                         &crack.traction_shear})
-      erase_front(*values, gone);
+    erase_front(crack.reference_x, gone);
+    for (auto* values : crack.memory()) erase_front(*values, gone);
     erase_front(crack.intact, gone);
     for (Face& face : crack.face) face.drop_first(gone);
   }
