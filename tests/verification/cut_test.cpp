@@ -39,6 +39,41 @@ TEST(VerificationCut, UndampedClosesItsLedgerTwiceAsTightly) {
   EXPECT_LT(std::abs(result.ledger.residue()), 0.01 * result.ledger.tool_work);
 }
 
+/// Whatever calms the chip says what it takes: the ledger closes to 1 % at each crossing once the cut is under way, and
+/// the force is the undamped one within 3 %. The thermostat's target lies above what the moving chip carries, 0.42 of
+/// the elastic energy at this speed: below it, the thermostat would brake the chip and the tool have to push it.
+TEST(VerificationCut, EveryDampingIsBooked) {
+  Scene plain = shipped("verification_45", {{"resolution.cells_through_chip", 4}, {"cut.travel", 6}});
+  plain.pic_damping.reset();
+  plain.steady_state.not_before = 100;
+  const auto mean_force = [](const CutResult& result) {
+    double sum = 0, count = 0;
+    for (const ForceSample& sample : result.history)
+      if (sample.travel > 1.5) {
+        sum += sample.F_c;
+        count += 1;
+      }
+    return sum / count;
+  };
+  const double undamped = mean_force(run(plain));
+  Scene pic = plain, xpic = plain, thermostat = plain;
+  pic.pic_damping = PicDamping{.rate = 0.025};
+  xpic.xpic_damping = XpicDamping{.rate = 0.025, .order = 2};
+  thermostat.thermostat = Thermostat{.kinetic_share = 0.6, .gain = 0.002};
+  for (const Scene& scene : {pic, xpic, thermostat}) {
+    const CutResult result = run(scene);
+    double last = 0;
+    for (const ForceSample& sample : result.history) {
+      EXPECT_GE(sample.ledger.damping, last);
+      last = sample.ledger.damping;
+      if (sample.travel < 1) continue;
+      EXPECT_LT(std::abs(sample.ledger.residue()), 0.01 * sample.ledger.tool_work) << sample.travel;
+    }
+    EXPECT_GT(last, 0.0);
+    EXPECT_NEAR(mean_force(result), undamped, 0.03 * undamped);
+  }
+}
+
 TEST(VerificationCut, SmallerRakesAreSteadyToo) {
   for (const char* name : {"verification_30", "verification_15"}) {
     const Scene scene = shipped(name, {{"resolution.cells_through_chip", 6}});
