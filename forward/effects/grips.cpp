@@ -1,5 +1,6 @@
 #include "forward/effects/grips.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace kerf::forward {
@@ -21,27 +22,44 @@ double rotation(const State& state, const Scene& scene, Side side, double place)
   return side == above ? -std::atan(slope) : std::atan(slope);
 }
 
-/// E' of a beam along the cut: one over twice the least energy of unit stress along it, the stress across the plane of
-/// the picture being free to take its plane-strain value.
-double beam_modulus(const laws::Material& material) {
-  return std::visit(
-      [](const auto& law) {
-        const auto energy = [&](double zz) { return law.elastic_energy({1.0, 0.0, zz, 0.0}); };
-        const double least = energy(0.0), linear = 0.5 * (energy(1.0) - energy(-1.0));
-        const double square = 0.5 * (energy(1.0) + energy(-1.0)) - least;
-        return 0.5 / (least - 0.25 * linear * linear / square);
-      },
-      material);
+/// What the laws of the bonds that still hold around a place have taken, per area.
+double bonded(const State& state, const Scene& scene, double place) {
+  const Crack& crack = state.crack;
+  const Face &upper = crack.face[above], &lower = crack.face[below];
+  double n = 0, taken = 0;
+  for (std::size_t k = 0; k < crack.size(); ++k) {
+    if (std::abs(crack.reference_x[k] - place) > 0.5 * scene.grips->gauge) continue;
+    n += 1.0;
+    taken += scene.cohesive.mode_I->area(std::max(upper.y[k] - lower.y[k], 0.0)) +
+             scene.cohesive.mode_II->area(std::abs(upper.x[k] - lower.x[k]));
+  }
+  return taken / n;
 }
 
-/// What a section of the uncracked end, clear of the clamp, takes from the J-integral of one pulled arm: the shear
-/// force P through its rotation, and the bending energy M^2 / (2 E' I).
+/// What a section of the uncracked end takes from the J-integral of one pulled arm, with the normal along the cut:
+///     int (W - s_xx u_x,x - s_xy u_y,x) dy,   the negative of it being   P sin(theta) + int (W - 2 W_shear) dy
+/// where W is the stored energy and W_shear that of the shear stress alone: s_yy is small there, and every point's face
+/// along the cut turns by theta. W is read off the stresses; M^2 / (2 E' I) would leave out the energy of shear and
+/// what clamp and bonds that slip do to a section of wood. Of J at the notch the section lacks what the bonds that it
+/// crosses have taken.
 double uncracked_release(const State& state, const Scene& scene, double pull) {
   const double height = scene.cut.depth + scene.grips->lower_arm;
   const double section = scene.window.ahead * scene.cut.depth - 0.75 * height;
-  const double moment = pull * (section - scene.grips->position);
-  return pull * std::sin(rotation(state, scene, above, section)) +
-         moment * moment / (2.0 * beam_modulus(scene.material) * height * height * height / 12.0);
+  const Particles& p = state.particles;
+  double stored = 0.0;
+  std::visit(
+      [&](const auto& law) {
+        for (std::size_t i = 0; i < p.size(); ++i) {
+          const double share = 1.0 - std::abs(p.x[i] - section) / state.grid.cell_x;
+          if (share <= 0.0) continue;
+          laws::StressPoint stress = p.stress(i);
+          const double whole = law.elastic_energy(stress);
+          stress.xx = stress.yy = stress.zz = 0.0;
+          stored += p.volume[i] * share / state.grid.cell_x * (whole - 2.0 * law.elastic_energy(stress));
+        }
+      },
+      scene.material);
+  return pull * std::sin(rotation(state, scene, above, section)) + stored - bonded(state, scene, section);
 }
 
 }  // namespace

@@ -10,7 +10,7 @@ namespace kerf::forward {
 /// and theta the rotation of the arm at the grip the energy release rate of crack tip and bridging zone together is
 ///     J = sum over the arms of P sin(theta)                        (J-integral around the specimen)
 /// whatever the law of the zone (Paris & Paris 1988; Andersson & Stigh 2004). When one arm alone is pulled, a
-/// section of the uncracked end takes P sin(theta) and M^2 / (2 E' I) of the whole beam.
+/// section of the uncracked end takes away its own P sin(theta) and the energy of bending that it stores.
 
 /// Moves the anchors with the speed ramp and clears the step's forces.
 void move_grips(State& state, const Scene& scene);
