@@ -73,7 +73,7 @@ std::vector<Block> declare() {
        .parameters = {text("arms", "pull both arms (double cantilever beam) or the upper one, the far end clamped",
                            {"both", "upper"}),
                       number("lower_arm", "1", 0.2, 50, "height of the lower arm, in depths of cut").or_else("1"),
-                      number("position", "1", 0.1, 10, "of the grips from the end, in depths of cut").or_else("0.5"),
+                      number("position", "1", 0.1, 10, "of the grips from the end, in depths of cut").or_else("1.5"),
                       number("width", "1", 0.01, 5, "of a grip along the arm, in depths of cut").or_else("0.25"),
                       number("gauge", "1", 0.05, 5, "length over which an arm's rotation is read, in depths of cut")
                           .or_else("0.5")}},
@@ -307,6 +307,15 @@ Scene read_scene(const Document& document) {
                    .width = grips->number("width") * cut.depth,
                    .gauge = grips->number("gauge") * cut.depth,
                    .lower_arm = grips->number("lower_arm") * cut.depth};
+  if (scene.grips) {
+    // Where the end takes half of the kernel away, markers follow the material further in and turn too little.
+    const double clear = scene.grips->position - 0.5 * scene.grips->gauge, least = 2.0 * scene.cell_length();
+    if (clear < least)
+      throw InputError(
+          fmt::format("{}: the gauge of the grips begins {:.4g} mm from the specimen's end (allowed from two cells, "
+                      "{:.4g} mm): move position in, shorten gauge, or take more cells_through_chip",
+                      grips->where("position"), clear, least));
+  }
   if (const Values* friction = block("friction")) scene.friction = read_friction(*friction);
   if (const Values* edge = block("edge_contact"))
     scene.edge_contact = {.press_in = edge->number("press_in") * cut.depth,

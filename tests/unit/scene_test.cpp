@@ -117,6 +117,12 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{
             "neither_grips_nor_tool", "verification_45", "[tool]\nrake = \"45 deg\"\n", "", "", {"[tool]", "[grips]"}},
         Mistake{"grips_without_arms", "dcb_rcurve", "arms = \"both\"\n", "", "", {"[grips]", "arms", "upper"}},
+        Mistake{"grips_at_the_very_end",  // 0.7 depths of 4 mm less 1 mm; cells of 1 mm
+                "dcb_rcurve",
+                "arms = \"both\"\n",
+                "arms = \"both\"\nposition = 0.7\n",
+                "position = ",
+                {"gauge", "1.8 mm from the specimen's end", "two cells, 2 mm", "position"}},
         Mistake{"grips_with_an_unknown_arm",
                 "dcb_rcurve",
                 "arms = \"both\"",
