@@ -85,7 +85,8 @@ Outline outline_of(const Scene& scene, const std::string& contact, double tip_ra
 constexpr double far = 50;
 
 Body round_rake() {
-  const Scene scene = kerf::testing::shipped("verification_45");  // rake 45 deg
+  Scene scene = kerf::testing::shipped("verification_45");  // rake 45 deg
+  scene.tool.separation = 0;  // the arc as a whole; the wall before a dead zone has a test of its own
   const double r = 0.3, a = pi / 4;
   // The circle touches the plane y = 0 and the rake plane x cos a + y sin a = 0: the centre is at height r and at
   // distance r behind the rake plane.
@@ -94,6 +95,17 @@ Body round_rake() {
   const Point high{c.x + r * std::cos(a) + far * up.x, c.y + r * std::sin(a) + far * up.y};
   return {"rake with round tip", outline_of(scene, "rake face", r),
           Drawn({c.x - far, 0}).line({c.x, 0}).arc(c, r, -pi / 2, a).line(high), c, r};
+}
+
+Body tip_with_dead_zone() {
+  Scene scene = kerf::testing::shipped("verification_45");
+  scene.tool.separation = 115 * pi / 180;
+  const double r = 0.3, a = pi / 4, from = -pi / 2 + scene.tool.separation;
+  const Point c{-r * (1 + std::sin(a)) / std::cos(a), r};
+  const Point low{c.x + r * std::cos(from) + far * std::sin(from), c.y + r * std::sin(from) - far * std::cos(from)};
+  const Point high{c.x + r * std::cos(a) - far * std::sin(a), c.y + r * std::sin(a) + far * std::cos(a)};
+  return {"round tip with a dead zone", outline_of(scene, "rake face", r), Drawn(low).arc(c, r, from, a).line(high), c,
+          r};
 }
 
 Body round_underside() {
@@ -154,7 +166,7 @@ Body nose_bar() {
 }
 
 std::vector<Body> bodies() {
-  return {round_rake(), round_underside(), worn_edge(), breaker(), sole(), nose_bar()};
+  return {round_rake(), tip_with_dead_zone(), round_underside(), worn_edge(), breaker(), sole(), nose_bar()};
 }
 
 /// Points around the corner, out to 1 mm from its surface and in to where the body is not hollowed out yet.
