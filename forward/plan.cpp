@@ -15,7 +15,8 @@ namespace kerf::forward {
 
 std::vector<Stage> plan(const Scene& scene) {
   // Stiff enough that faces overlap by about a hundredth of a cell at yield, soft enough for the elastic time step.
-  const double stiffness = 2.0 * laws::plane_strain_modulus(scene.material) / scene.cell();
+  const double stiffness =
+      scene.resolution.contact_stiffness * 2.0 * laws::plane_strain_modulus(scene.material) / scene.cell();
   const double cap = scene.friction ? scene.friction->yield_cap * laws::shear_yield(scene.material) : 0.0;
   const auto each_step = [&](double rate) { return 1.0 - std::exp(-rate * scene.resolution.courant_number); };
 
@@ -35,7 +36,7 @@ std::vector<Stage> plan(const Scene& scene) {
   else
     add("tool", "the tool advances and its tip follows the lower face", [&scene, lift](State& state) {
       move_tool(state, scene);
-      follow_face(state, scene.cut.depth, lift);
+      follow_face(state, scene.cut.depth, lift, scene.edge_contact.has_value());
     });
   add("stress", "velocity gradients, stresses of the material (stress first), internal forces",
       [&scene](State& state) { update_stress(state, scene.material); });

@@ -125,6 +125,8 @@ struct Crack {
 
 struct ToolState {
   double x = 0, y = 0, speed = 0, vertical_speed = 0;
+  double overlap = 0;                     ///< mean penetration of the lower face in the last step, mm
+  double sink = 0;                        ///< by how much the edge is lowered to make up for it, mm
   double tip_radius = 0, tip_growth = 0;  ///< mm, and its change in this step
 };
 
@@ -133,8 +135,9 @@ struct ToolForce {
   std::array<FaceForce, tool_face_count> face;
   double on_work_x = 0, on_work_y = 0;
   double penetration = 0;
-  double at_edge = 0;  ///< sum of the pressures on the chip near the edges where the window cuts it, N/mm
-  double release = 0;  ///< energy release rate of a specimen in grips, N/mm
+  double bottom_overlap = 0;  ///< sum of pressure times penetration on the lower face, N/mm mm
+  double at_edge = 0;         ///< sum of the pressures on the chip near the edges where the window cuts it, N/mm
+  double release = 0;         ///< energy release rate of a specimen in grips, N/mm
 };
 
 /// Work done since the start, N mm/mm; what cannot be read off the state is added up here.

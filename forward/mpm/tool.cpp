@@ -178,22 +178,27 @@ void move_tool(State& state, const Scene& scene) {
     tool.tip_growth = radius - tool.tip_radius;
     tool.tip_radius = radius;
   }
+  const double bottom = state.force.face[static_cast<std::size_t>(ToolFace::bottom)].normal;
+  tool.overlap = bottom > 0.0 ? state.force.bottom_overlap / bottom : 0.0;
   state.force = {};
   state.contact_energy = 0.0;
 }
 
-void follow_face(State& state, double depth, double lift) {
+void follow_face(State& state, double depth, double lift, bool sinks) {
   const Face& face = state.crack.face[below];
+  ToolState& tool = state.tool;
   double sum = 0.0, count = 0.0;
   for (std::size_t k = 0; k < state.crack.size(); ++k) {
-    const double ahead = face.x[k] - state.tool.x;
+    const double ahead = face.x[k] - tool.x;
     if (face.inverse_mass[k] == 0.0 || ahead < 0.1 * depth || ahead > 0.3 * depth) continue;
     sum += face.y[k];
     count += 1.0;
   }
-  const double height = count > 0.0 ? sum / count + lift : state.tool.y;
-  state.tool.vertical_speed = state.tool.speed * (height - state.tool.y) / (0.3 * depth);
-  state.tool.y += state.step * state.tool.vertical_speed;
+  const double way = state.step * tool.speed / (0.3 * depth);
+  if (sinks) tool.sink += way * (tool.overlap - tool.sink);
+  const double height = count > 0.0 ? sum / count + lift - tool.sink : tool.y;
+  tool.vertical_speed = tool.speed * (height - tool.y) / (0.3 * depth);
+  tool.y += state.step * tool.vertical_speed;
 }
 
 void press(State& state, const Contact& contact, const Scene& scene, const PressOptions& options) {
@@ -227,6 +232,7 @@ void press(State& state, const Contact& contact, const Scene& scene, const Press
     if (blunts)  // a surface that gives way takes work out of the spring
       state.work.tool += pressure * length * (before.touch(x, y).distance - touch.distance);
     state.contact_energy += 0.5 * pressure * -touch.distance * length;
+    if (contact.surface == Surface::lower_face) state.force.bottom_overlap -= pressure * touch.distance * length;
     FaceForce& force = state.force.face[static_cast<std::size_t>(touch.face)];
     force.normal += pressure * length;
     force.contact_length += length;

@@ -36,9 +36,11 @@ void move_tool(State& state, const Scene& scene);
 /// The base lifts as the layer is pulled off it, by a few per cent of h. Held at the machine's height, an edge would
 /// squeeze that lift back down through a patch of a cell, and the force would measure the mesh. So the tip follows the
 /// lower face,
-///     d y_tip / d travel = (mean height of the face 0.1 h ... 0.3 h ahead + lift - y_tip) / (0.3 h),
-/// and the work of that vertical motion is booked.
-void follow_face(State& state, double depth, double lift);
+///     d y_tip / d travel = (mean height of the face 0.1 h ... 0.3 h ahead + lift - sink - y_tip) / (0.3 h),
+/// and the work of that vertical motion is booked. An edge that presses (`sinks`) is lowered by the mean penetration
+/// that its penalty spring needs, so that the face, and not the tool, is pressed in by what the scene says, whatever
+/// the stiffness.
+void follow_face(State& state, double depth, double lift, bool sinks);
 
 /// The tool is rigid and analytic; it touches markers on the surfaces of the work, never particles or nodes, so its
 /// normals are exact and contact begins where the surface is. A penalty acts on the distance phi < 0: normal traction

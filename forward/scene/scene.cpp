@@ -165,6 +165,9 @@ std::vector<Block> declare() {
                 .or_else("0.6"),
             number("cell_stretch", "1", 1, 8,
                    "length of a cell along the cut over its height; for chips that are stiff along the grain")
+                .or_else("1"),
+            number("contact_stiffness", "1", 0.05, 4,
+                   "stiffness of the contacts in multiples of twice the plane-strain modulus per cell")
                 .or_else("1")},
        .required = true},
       {.path = "steady_state",
@@ -290,7 +293,8 @@ Scene read_scene(const Document& document) {
                              .particles_per_cell_side = whole_number(resolution, "particles_per_cell_side"),
                              .markers_per_cell = whole_number(resolution, "markers_per_cell"),
                              .courant_number = resolution.number("courant_number"),
-                             .cell_stretch = resolution.number("cell_stretch")},
+                             .cell_stretch = resolution.number("cell_stretch"),
+                             .contact_stiffness = resolution.number("contact_stiffness")},
               .steady_state = {.tolerance = steady.number("tolerance"), .not_before = steady.number("not_before")}};
   const auto block = [&](const char* path) { return contents.has(path) ? &contents.at(path) : nullptr; };
   const Values* grips = block("grips");

@@ -124,7 +124,8 @@ struct Window {
 struct Resolution {
   int cells_through_chip, particles_per_cell_side, markers_per_cell;
   double courant_number;
-  double cell_stretch = 1;  ///< length of a cell along the cut over its height
+  double cell_stretch = 1;       ///< length of a cell along the cut over its height
+  double contact_stiffness = 1;  ///< of the contact penalties, in multiples of twice the plane-strain modulus per cell
 };
 
 struct SteadyState {
