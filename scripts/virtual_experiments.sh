@@ -26,7 +26,7 @@ sweep talk_toughness verification_45 $toughness=0.5,1,2,3,4kJ/m^2
 sweep talk_rake verification_45 tool.rake=10,20,30,40,50,60deg cut.travel=14
 sweep talk_friction friction_45 friction.coefficient=0,0.1,0.2,0.3,0.4,0.5,0.6
 sweep talk_edge verification_45 cut.depth=0.25,0.5,1mm edge_contact.press_in=0.005,0.01,0.02 edge_contact.edge_radius=1 \
-  cut.travel=12 steady_state.not_before=9
+  cut.travel=12 steady_state.not_before=9 resolution.cells_through_chip=6
 sweep wood_rl wood_rl --zip $depths window.zone=0.6,1.2,2,2.5,3mm
 sweep wood_tl wood_tl_cut bridging.tool=cuts,ignores $depths
 sweep plane_m4 plane_breaker friction.coefficient=-,0.3 cut.depth=0.2,0.3,0.4,0.5mm steady_state.not_before=16 cut.travel=50
