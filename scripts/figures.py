@@ -200,7 +200,7 @@ def plane(results):
     light_grid(left)
     points(left, table(results, "plane_m12"), "cut.depth", ACCENT, "mouth 1.2 mm", scale=1)
     m4 = table(results, "plane_m4")
-    for friction, colour, label in (("-", WARM, "mouth 4 d"), (0.3, INK, "mouth 4 d, μ = 0.3")):
+    for friction, colour, label in (("", WARM, "mouth 4 d"), (0.3, INK, "mouth 4 d, μ = 0.3")):
         points(left, [row for row in m4 if row["friction.coefficient"] == friction], "cut.depth", colour, label, scale=1)
     d = np.linspace(0.05, 0.5, 40)
     left.plot(d, PAPER_EXPONENTIAL[0] * np.exp(PAPER_EXPONENTIAL[1] * d), color=QUIET, linestyle="--", linewidth=1.2,
