@@ -13,7 +13,9 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "scripts"))
 import numpy as np  # noqa: E402
-from report.style import ACCENT, ACCENT_LIGHT, INK, QUIET, SAND, WARM, WARM_LIGHT, figure, light_grid  # noqa: E402
+from matplotlib.patches import Polygon  # noqa: E402
+from report.cut import read_cut, tool_outlines  # noqa: E402
+from report.style import ACCENT, INK, QUIET, SAND, STRAIN, WARM, figure, light_grid  # noqa: E402
 
 # What the paper prints (Nairn 2016): forces in J/m^2 against depth in mm for a chip breaker and a mouth of 1.2 mm.
 PAPER_EXPONENTIAL = (233.0, 6.72)
@@ -220,7 +222,26 @@ def plane(results):
     return fig
 
 
-FIGURES = {"talk_forces": talk, "talk_effects": effects, "bottom_force": bottom, "wood_forces": wood, "plane_forces": plane}
+def chips(results):
+    """The steady chips behind a chip breaker for four mouths, coloured by plastic strain."""
+    openings = [row["sole.opening_in_depths"] for row in table(results, "plane_mouth")]
+    fig, axes = figure(900, 260, 1, max(len(openings), 1), sharey=True)
+    for number, (ax, opening) in enumerate(zip(np.atleast_1d(axes), openings), 1):
+        cut = read_cut(results / "plane_mouth" / "cuts" / f"{number:03}.h5")
+        tool, position = cut.tool, cut.particles["position"]
+        left, right, bottom, top = tool["tip_x"] - 1.9, tool["tip_x"] + 1.6, -0.3, 2.2
+        for outline in tool_outlines(tool, left, right, top, bottom):
+            ax.add_patch(Polygon(outline, closed=True, facecolor="#f4f1ea", edgecolor=INK, linewidth=1))
+        ax.scatter(position[:, 0], position[:, 1], c=cut.particles["plastic_strain"], s=14, marker="s", linewidths=0,
+                   cmap=STRAIN, vmin=0, vmax=0.3)
+        ax.set(xlim=(left, right), ylim=(bottom, top), aspect="equal", xticks=[], yticks=[],
+               title=f"m = {opening:g} d, F_c = {cut.result['F_c']['value']:.0f} N/m")
+        for spine in ax.spines.values():
+            spine.set_visible(False)
+    return fig
+
+
+FIGURES = {"plane_chips": chips, "talk_forces": talk, "talk_effects": effects, "bottom_force": bottom, "wood_forces": wood, "plane_forces": plane}
 
 
 def main():

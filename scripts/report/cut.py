@@ -116,7 +116,7 @@ def chip_picture(cut):
         gaps = np.linalg.norm(np.diff(points, axis=0), axis=1) > 4 * spacing  # where markers have left the window
         line[1:][gaps] = np.nan
         axes.plot(line[:, 0], line[:, 1], color=WARM, linewidth=1.2)
-    for outline in _tool_outlines(tool, left, right, top, bottom):
+    for outline in tool_outlines(tool, left, right, top, bottom):
         axes.add_patch(Polygon(outline, closed=True, facecolor="#f4f1ea", edgecolor=INK, linewidth=1.2, zorder=0.5))
     inward = sum(_tool_faces(tool))  # half-way between the rake face and the clearance face
     axes.text(*(np.array([tool["tip_x"], tool["tip_y"]]) + 1.7 * depth * inward / np.linalg.norm(inward)), "tool",
@@ -152,7 +152,7 @@ def _tool_faces(tool):
             np.array([-np.cos(clearance), np.sin(clearance)]))
 
 
-def _tool_outlines(tool, left, right, top, bottom):
+def tool_outlines(tool, left, right, top, bottom):
     """The parts of the tool as polygons: blade (its tip sharp or round), chip breaker, sole."""
     apex = np.array([tool["tip_x"], tool["tip_y"]])
     rake_face, clearance_face = _tool_faces(tool)
