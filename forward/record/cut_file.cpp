@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <hdf5.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -13,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "forward/record/hdf5.hpp"
 #include "forward/record/result_json.hpp"
 #include "models/base/atomic_file.hpp"
 #include "models/base/error.hpp"
@@ -22,47 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Anything HDF5 refuses; becomes an InputError that names the file.
-struct Failure {
-  std::string what;
-};
-
-/// One HDF5 identifier, closed when it goes out of scope.
-class Handle {
- public:
-  using Close = herr_t (*)(hid_t);
-  Handle(hid_t id, Close close, const char* what) : id_(id), close_(close) {
-    if (id_ < 0) throw Failure{what};
-  }
-  Handle(const Handle&) = delete;
-  Handle& operator=(const Handle&) = delete;
-  ~Handle() { close_(id_); }
-  operator hid_t() const { return id_; }
-
- private:
-  hid_t id_;
-  Close close_;
-};
-
-void check(herr_t status, const char* what) {
-  if (status < 0) throw Failure{what};
-}
-
-/// HDF5 prints its error stack by default; we report one line of our own instead.
-class QuietErrors {
- public:
-  QuietErrors() {
-    H5Eget_auto2(H5E_DEFAULT, &print_, &data_);
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  }
-  QuietErrors(const QuietErrors&) = delete;
-  QuietErrors& operator=(const QuietErrors&) = delete;
-  ~QuietErrors() { H5Eset_auto2(H5E_DEFAULT, print_, data_); }
-
- private:
-  H5E_auto2_t print_ = nullptr;
-  void* data_ = nullptr;
-};
+using namespace hdf5;
 
 /// A column of numbers with its unit: `rows` entries of `components` each, row by row.
 struct Field {
@@ -195,16 +155,6 @@ std::vector<Field> tool_fields(const Scene& scene, const Snapshot& snapshot) {
   return fields;
 }
 
-void write_text_attribute(hid_t owner, const char* name, const std::string& text) {
-  const Handle type(H5Tcopy(H5T_C_S1), H5Tclose, "string type");
-  check(H5Tset_size(type, H5T_VARIABLE), "string type");
-  check(H5Tset_cset(type, H5T_CSET_UTF8), "string type");
-  const Handle space(H5Screate(H5S_SCALAR), H5Sclose, "attribute space");
-  const Handle attribute(H5Acreate2(owner, name, type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose, "attribute");
-  const char* content = text.c_str();
-  check(H5Awrite(attribute, type, &content), "attribute");
-}
-
 void write_group(hid_t parent, const char* name, const std::vector<Field>& fields) {
   const Handle group(H5Gcreate2(parent, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose, "group");
   for (const Field& field : fields) {
@@ -215,16 +165,16 @@ void write_group(hid_t parent, const char* name, const std::vector<Field>& field
         "dataset");
     if (!field.values.empty())
       check(H5Dwrite(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, field.values.data()), "dataset");
-    write_text_attribute(set, "unit", field.unit);
+    write_attribute(set, "unit", field.unit);
   }
 }
 
 void write_h5(const fs::path& file, const Document& document, const Scene& scene, const CutResult& result) {
   const Handle h5(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose, "new file");
-  write_text_attribute(h5, "title", scene.title);
-  write_text_attribute(h5, "code_version", KERF_VERSION);
-  write_text_attribute(h5, "scene", document.canonical());
-  write_text_attribute(h5, "result", result_json(result).dump(2));
+  write_attribute(h5, "title", scene.title);
+  write_attribute(h5, "code_version", KERF_VERSION);
+  write_attribute(h5, "scene", document.canonical());
+  write_attribute(h5, "result", result_json(result).dump(2));
   write_group(h5, "history", history_fields(result.history, faces_of(scene)));
   write_group(h5, "history/ledger", ledger_fields(result.history));
   if (result.is_specimen) write_group(h5, "r_curve", extension_fields(result.history));
