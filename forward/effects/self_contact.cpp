@@ -12,7 +12,7 @@ std::vector<std::vector<std::size_t>> segments_by_column(const Face& top, const 
   std::vector<std::vector<std::size_t>> columns(static_cast<std::size_t>(grid.columns));
   for (std::size_t j = 0; j + 1 < top.size(); ++j) {
     if (top.inverse_mass[j] == 0.0 || top.inverse_mass[j + 1] == 0.0) continue;
-    const auto [low, high] = std::minmax(grid.column_of(top.x[j]), grid.column_of(top.x[j + 1]));
+    const auto [low, high] = std::minmax({grid.column_of(top.x[j]), grid.column_of(top.x[j + 1])});
     for (int c = static_cast<int>(low); c <= static_cast<int>(high); ++c)
       columns[static_cast<std::size_t>(c)].push_back(j);
   }
