@@ -4,7 +4,6 @@
 
 #include "forward/effects/bridging.hpp"
 #include "forward/effects/grips.hpp"
-#include "forward/effects/self_contact.hpp"
 #include "forward/effects/thermostat.hpp"
 #include "forward/effects/xpic.hpp"
 #include "forward/mpm/crack.hpp"
@@ -47,9 +46,6 @@ std::vector<Stage> plan(const Scene& scene) {
       [&scene](State& state) { pull_faces(state, scene.cohesive); });
   add("closing", "the upper face cannot enter the lower one",
       [stiffness](State& state) { close_faces(state, stiffness); });
-  if (scene.self_contact)
-    add("self contact", "the curled chip cannot enter the uncut surface or itself",
-        [stiffness, reach = scene.self_contact->reach](State& state) { touch_itself(state, stiffness, reach); });
   for (const Contact& contact : contacts(scene))
     add(contact.name,
         contact.does + (contact.friction > 0.0 ? " and rubs, up to the slip limit and the yield cap" : ""),

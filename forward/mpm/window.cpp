@@ -204,7 +204,7 @@ State lay_out(const Scene& scene) {
                         (scene.particles_along_cell() * scene.resolution.particles_per_cell_side);
   state.crack.spacing = scene.marker_spacing();
   const std::vector<Contact> touching = contacts(scene);
-  state.follows_top = needs_top(touching) || scene.self_contact;
+  state.follows_top = needs_top(touching);
   for (const Contact& contact : touching)
     if (contact.friction > 0.0) surface(state, contact.surface).slip.emplace_back();
   if (!scene.grips) wrap_end(state, scene);

@@ -118,11 +118,6 @@ std::vector<Block> declare() {
            {number("press_in", "1", 1e-4, 0.2, "depth to which the edge presses into the face, in depths of cut"),
             number("edge_radius", "1", 0.05, 10.0, "radius of the lower edge, in depths of cut"),
             number("coefficient", "1", 0.0, 2.0, "coefficient of friction of the clearance side").or_else("0")}},
-      {.path = "self_contact",
-       .variant = "",
-       .meaning = "the curling chip may touch the uncut surface and itself",
-       .parameters =
-           {number("reach", "1", 0.05, 0.5, "entry up to which a touch is one, in depths of cut").or_else("0.4")}},
       {.path = "pic_damping",
        .variant = "",
        .meaning = "FLIP velocities blended towards PIC; damps where velocity gradients are high",
@@ -280,7 +275,6 @@ Scene read_scene(const Document& document) {
               .sole = {},
               .nose_bar = {},
               .bridging = {},
-              .self_contact = {},
               .grips = {},
               .pic_damping = {},
               .xpic_damping = {},
@@ -338,7 +332,6 @@ Scene read_scene(const Document& document) {
     scene.nose_bar = {
         .lead = bar->number("lead"), .radius = bar->number("radius"), .compression = bar->number("compression")};
   if (const Values* bridging = block("bridging")) scene.bridging = {.cut = bridging->text("tool") == "cuts"};
-  if (const Values* self = block("self_contact")) scene.self_contact = {.reach = self->number("reach") * cut.depth};
   if (const Values* pic = block("pic_damping")) scene.pic_damping = {.rate = pic->number("rate")};
   if (const Values* xpic = block("xpic_damping"))
     scene.xpic_damping = {.rate = xpic->number("rate"), .order = whole_number(*xpic, "order")};

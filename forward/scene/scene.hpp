@@ -95,11 +95,6 @@ struct Grips {
   double lower_arm;  ///< its height; the upper arm's is the depth of cut
 };
 
-/// The curling chip may touch the uncut surface and itself.
-struct SelfContact {
-  double reach;  ///< entry up to which a touch is one; deeper lies the chip itself
-};
-
 /// FLIP blended towards PIC at a rate in cell transits of the elastic wave: beta = 1 - exp(-rate CFL) each step.
 struct PicDamping {
   double rate;
@@ -145,7 +140,6 @@ struct Scene {
   std::optional<Sole> sole;
   std::optional<NoseBar> nose_bar;
   std::optional<Bridging> bridging;
-  std::optional<SelfContact> self_contact;
   std::optional<Grips> grips;
   std::optional<PicDamping> pic_damping;
   std::optional<XpicDamping> xpic_damping;

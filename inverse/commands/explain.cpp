@@ -79,7 +79,6 @@ void print_absent(const Scene& scene) {
   if (!scene.chip_breaker) fmt::print("  a chip breaker: the scene has no [chip_breaker]\n");
   if (!scene.sole) fmt::print("  the sole of a plane: the scene has no [sole]\n");
   if (!scene.nose_bar) fmt::print("  a nose bar: the scene has no [nose_bar]\n");
-  if (!scene.self_contact) fmt::print("  a curled chip that touches itself: the scene has no [self_contact]\n");
   fmt::print("  heat, rate dependence, a deforming tool, a crack that leaves its plane: no such effects here\n\n");
 }
 
