@@ -1,6 +1,7 @@
 #pragma once
 
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -25,7 +26,9 @@ struct ProcessOutput {
 /// put before the command ("NAME=value").
 inline ProcessOutput run_kerf(const std::string& arguments, const std::filesystem::path& folder,
                               const std::string& environment = "") {
-  const std::filesystem::path out = folder / "stdout.txt", err = folder / "stderr.txt";
+  // Tests that share a folder run side by side, each in a process of its own.
+  const std::string own = std::to_string(::getpid());
+  const std::filesystem::path out = folder / ("stdout-" + own), err = folder / ("stderr-" + own);
   const std::string command =
       environment + " '" + KERF_EXECUTABLE + "' " + arguments + " >'" + out.string() + "' 2>'" + err.string() + "'";
   const int status = std::system(command.c_str());
