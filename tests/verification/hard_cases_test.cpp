@@ -1,4 +1,3 @@
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -14,6 +13,10 @@ namespace {
 struct HardCase {
   std::string name, scene, settings, verdict, force;
 };
+
+void PrintTo(const HardCase& hard, std::ostream* to) {
+  *to << hard.name;
+}
 
 std::vector<HardCase> hard_cases() {
   std::ifstream file(KERF_SOURCE_DIR "/tests/verification/hard_cases.csv");
