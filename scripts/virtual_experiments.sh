@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The virtual experiments of the talk (2013) and of the bench plane (2016), one sweep each, and the README's figures of
-# them. Hours on a laptop; resumable: what was simulated before is taken from results/experiments.
+# them. Under an hour on two cores; resumable: what was simulated before is taken from results/experiments.
 # Usage: scripts/virtual_experiments.sh [NAME...]     only these sweeps
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -29,8 +29,8 @@ sweep talk_edge verification_45 cut.depth=0.25,0.5,1mm edge_contact.press_in=0.0
   cut.travel=12 steady_state.not_before=9 resolution.cells_through_chip=6
 sweep wood_rl wood_rl --zip $depths window.zone=0.6,1.2,2,2.5,3mm
 sweep wood_tl wood_tl_cut bridging.tool=cuts,ignores $depths
-sweep plane_m4 plane_breaker friction.coefficient=-,0.3 cut.depth=0.2,0.3,0.4,0.5mm steady_state.not_before=16 cut.travel=50
-sweep plane_m12 plane_breaker sole.opening=1.2mm sole.opening_in_depths=- cut.depth=0.2,0.3,0.4,0.5mm steady_state.not_before=16 cut.travel=50
+sweep plane_m4 plane_breaker friction.coefficient=-,0.3 cut.depth=0.2,0.3,0.4,0.5mm steady_state.not_before=16 cut.travel=28
+sweep plane_m12 plane_breaker sole.opening=1.2mm sole.opening_in_depths=- cut.depth=0.2,0.3,0.4,0.5mm steady_state.not_before=16 cut.travel=28
 sweep plane_mouth plane_breaker sole.opening_in_depths=12,4,2,1.5 steady_state.not_before=16 cut.travel=28
 sweep plane_tip plane_breaker tool.tip_radius=0,0.12,0.24,0.48mm steady_state.not_before=16 cut.travel=28
 sweep plane_angle plane_breaker chip_breaker.angle=0,-10,-20deg steady_state.not_before=16 cut.travel=28

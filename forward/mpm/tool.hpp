@@ -26,8 +26,7 @@ struct Contact {
 /// The contacts of a scene's tool, in the order in which they act.
 std::vector<Contact> contacts(const Scene& scene);
 
-/// Gives every surface that something touches with friction its lists of slips, and says whether the outer surface of
-/// the layer has to be followed.
+/// Whether something touches the outer surface of the layer, so that its markers have to be followed.
 bool needs_top(const std::vector<Contact>& contacts);
 
 /// Advances the tip with the velocity ramp, lets its radius grow, and clears this step's tool force.
