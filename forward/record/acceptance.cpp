@@ -76,6 +76,17 @@ void judge(CutResult& result, const Scene& scene) {
     refuse("no steady force: the two halves of the record differ by more than 1 % and their own scatter, or by 3 %");
   if (!(result.deepest_penetration < 0.25))
     refuse(fmt::format("a crack face went {:.2f} cells into the tool (allowed 0.25)", result.deepest_penetration));
+  if (scene.tool.tip_radius == 0.0 && !scene.edge_contact) {
+    // A sharp tip runs clear of the base. Where bonds are stronger than the material around them, the layer flows past
+    // the tip unparted and the base comes up with it.
+    const double share = result.face(ToolFace::bottom).normal.value / result.face(ToolFace::rake).normal.value;
+    if (!(share < 0.01))
+      refuse(fmt::format(
+          "the base presses on a sharp tool with {:.1f} % of the force on its rake face (allowed 1 %): the material "
+          "beside the plane flows instead of parting; take fewer cells through the chip, or a cohesive shear strength "
+          "nearer to the shear yield stress",
+          100 * share));
+  }
   if (!(result.sliding_share > 0.98))
     refuse(
         fmt::format("the chip sticks: the shear force on the rake face is {:.3f} of its slip limit (allowed from 0.98)",

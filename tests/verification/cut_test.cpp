@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "forward/record/acceptance.hpp"
 #include "forward/run.hpp"
 #include "tests/shipped_scene.hpp"
 
@@ -150,12 +151,18 @@ TEST(Cut, AWornEdgePressesOnTheBaseAndASharpOneDoesNot) {
   const CutResult sharp = run(scene);
   EXPECT_EQ(sharp.face(ToolFace::bottom).normal.value, 0.0);
   scene.edge_contact = EdgeContact{.press_in = 0.01 * 0.5, .edge_radius = 0.5, .friction = 0.0};
-  const CutResult worn = run(scene);
+  CutResult worn = run(scene);
   expect_accepted(worn);
   EXPECT_GT(worn.face(ToolFace::bottom).normal.value, 0.5);
   EXPECT_NEAR(worn.F_c.value, sharp.F_c.value, 0.02 * sharp.F_c.value);
   // The push on the base lifts the tool: F_t = Z F_c + F_b.
   EXPECT_NEAR(worn.F_t.value, -worn.F_c.value + worn.face(ToolFace::bottom).normal.value, 0.03 * worn.F_c.value);
+  // Under a tool that is meant to be sharp the same push would come from a layer that flows past the tip.
+  scene.edge_contact.reset();
+  judge(worn, scene);
+  EXPECT_FALSE(worn.accepted);
+  ASSERT_EQ(worn.refusals.size(), 1U);
+  EXPECT_NE(worn.refusals.front().find("sharp tool"), std::string::npos);
 }
 
 TEST(Acceptance, RefusesAGridTooCoarseForTheCohesiveLaw) {
