@@ -1,20 +1,9 @@
 #pragma once
 
-#include <cmath>
+#include "models/laws/lanes.hpp"
 
 namespace kerf::forward {
 
-/// Eight doubles that the compiler keeps in whatever SIMD registers the machine has.
-using Lanes = double __attribute__((vector_size(64)));
-
-inline Lanes load(const double* from) {
-  using Unaligned = double __attribute__((vector_size(64), aligned(8), may_alias));
-  return *reinterpret_cast<const Unaligned*>(from);
-}
-inline void store(double* to, Lanes values) {
-  using Unaligned = double __attribute__((vector_size(64), aligned(8), may_alias));
-  *reinterpret_cast<Unaligned*>(to) = values;
-}
 /// Four doubles: the masses of a row of three nodes and one over-read.
 using Quad = double __attribute__((vector_size(32)));
 inline void add_row(double* to, Quad values) {

@@ -77,6 +77,11 @@ struct Bond {
   bool fails;
 };
 
+/// Most scenes have exponents of one, and every pair asks in every step.
+double power(double share, double exponent) {
+  return exponent == 1.0 ? share : std::pow(share, exponent);
+}
+
 Bond decoupled(const Cohesive& law, double normal, double shear, double largest_normal, double largest_shear) {
   const bool areas = law.mixed_mode == MixedMode::areas;
   const double now_normal = std::max(normal, largest_normal), now_shear = std::max(shear, largest_shear);
@@ -85,7 +90,7 @@ Bond decoupled(const Cohesive& law, double normal, double shear, double largest_
   };
   const double share_I = used(*law.mode_I, now_normal), share_II = used(*law.mode_II, now_shear);
   return {traction(*law.mode_I, normal, largest_normal), traction(*law.mode_II, shear, largest_shear),
-          std::pow(share_I, law.exponent_n) + std::pow(share_II, law.exponent_m) >= 1.0};
+          power(share_I, law.exponent_n) + power(share_II, law.exponent_m) >= 1.0};
 }
 
 /// Both modes follow their laws at one common share of the critical openings, the largest so far (Tvergaard 1990).

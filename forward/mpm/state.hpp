@@ -13,8 +13,6 @@ namespace kerf::forward {
 /// Particles and nodes belong to one side of the crack plane, told once by a label: a velocity field each.
 enum Side { below = 0, above = 1 };
 
-constexpr std::size_t lane_count = 8;
-
 /// Material points, structure of arrays, sorted by (side, cell row, cell); each side is padded to whole batches of
 /// `lane_count` with points of zero volume. Units mm, mm/s, MPa; volume is the reference volume per unit width, mm^2.
 struct Particles {
@@ -48,6 +46,35 @@ struct Particles {
     return all;
   }
   std::size_t size() const { return x.size(); }
+
+  /// The eight points from `first` on, as a material law wants them.
+  template <bool with_axes>
+  laws::MaterialPoints material_points(std::size_t first) const {
+    laws::MaterialPoints points{load(&stress_xx[first]),
+                                load(&stress_yy[first]),
+                                load(&stress_zz[first]),
+                                load(&stress_xy[first]),
+                                load(&plastic_strain[first]),
+                                {},
+                                {}};
+    if constexpr (with_axes) {
+      points.axis_x = load(&axis_x[first]);
+      points.axis_y = load(&axis_y[first]);
+    }
+    return points;
+  }
+  template <bool with_axes>
+  void set(std::size_t first, const laws::MaterialPoints& points) {
+    store(&stress_xx[first], points.xx);
+    store(&stress_yy[first], points.yy);
+    store(&stress_zz[first], points.zz);
+    store(&stress_xy[first], points.xy);
+    store(&plastic_strain[first], points.plastic_strain);
+    if constexpr (with_axes) {
+      store(&axis_x[first], points.axis_x);
+      store(&axis_y[first], points.axis_y);
+    }
+  }
   laws::StressPoint stress(std::size_t i) const {
     laws::StressPoint point{stress_xx[i], stress_yy[i], stress_zz[i], stress_xy[i]};
     if (has_axes) {
@@ -60,22 +87,36 @@ struct Particles {
 
 /// One side's nodes, row-major; vectors are interleaved (x, y), so that three nodes of a row lie side by side.
 struct VelocityField {
-  std::vector<double> mass, momentum, velocity, next_velocity, change, force;
+  std::vector<double> mass, momentum, velocity, force;
+  std::vector<double> change;    ///< of the velocity in this step
   std::vector<double> filtered;  ///< what XPIC blends towards; empty without it
+  struct Span {
+    int begin = 0, end = 0;  ///< columns, multiples of `lane_count`
+  };
+  std::vector<Span> spans;  ///< of each row: where the side has material, with room to move until the next sort
 };
 
 /// The regular grid that travels with the tool in whole cells. Node (i, j) stands at origin + (i cell_x, j cell_y);
 /// cells may be longer along the cut than they are high.
 struct Grid {
   int columns = 0, rows = 0;
+  int stride = 0;  ///< from one row to the next: the columns, rounded up to whole batches
   double cell_x = 0, cell_y = 0, inverse_cell_x = 0, inverse_cell_y = 0, origin_x = 0, origin_y = 0;
   double left = 0, top = 0;  ///< material beyond these leaves the window at its next shift
   std::array<VelocityField, 2> side;
   bool clamps_end = false;  ///< the far end is held across the crack plane too, not only along it
 
-  std::size_t nodes() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
+  std::size_t nodes() const { return static_cast<std::size_t>(stride) * static_cast<std::size_t>(rows); }
   std::size_t node(int i, int j) const {
-    return static_cast<std::size_t>(j) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(i);
+    return static_cast<std::size_t>(j) * static_cast<std::size_t>(stride) + static_cast<std::size_t>(i);
+  }
+  /// Calls visit(first node) for every batch of eight nodes of a row at which the field may have material.
+  template <class Visit>
+  void each_batch(const VelocityField& field, Visit&& visit) const {
+    for (int j = 0; j < rows; ++j) {
+      const VelocityField::Span& span = field.spans[static_cast<std::size_t>(j)];
+      for (int i = span.begin; i < span.end; i += static_cast<int>(lane_count)) visit(node(i, j));
+    }
   }
   double column_of(double x) const { return (x - origin_x) * inverse_cell_x; }
   double row_of(double y) const { return (y - origin_y) * inverse_cell_y; }

@@ -2,28 +2,13 @@
 
 #include <algorithm>
 
-#include "forward/mpm/bspline.hpp"
+#include "forward/mpm/stencil.hpp"
 
 namespace kerf::forward {
 namespace {
 
 void clear(std::vector<double>& values) {
   std::fill(values.begin(), values.end(), 0.0);
-}
-
-/// Adds one particle's mass and momentum to the nodes around it.
-void add_momentum(VelocityField& field, const Grid& grid, const Spline& sx, const Spline& sy, double mass,
-                  double velocity_x, double velocity_y) {
-  const Lanes weights = sx.row_weights();
-  const Lanes momentum = mass * weights * pairs(velocity_x, velocity_y);
-  const Quad masses = mass * Quad{weights[0], weights[2], weights[4], 0.0};
-  for (int row = 0; row < 3; ++row) {
-    const std::size_t node = grid.node(sx.base, sy.base + row);
-    const double w = sy.weight(row);
-    add_row(&field.mass[node], w * masses);
-    double* to = &field.momentum[2 * node];
-    store(to, load(to) + w * momentum);
-  }
 }
 
 /// Bottom row and everything below it does not move; the far end of the window holds its horizontal position, and the
@@ -47,20 +32,36 @@ void gather_momentum(State& state) {
     clear(field.momentum);
   }
   for (std::size_t side = 0; side < 2; ++side)
-    for (std::size_t i = p.begin[side]; i < p.begin[side + 1]; ++i)
-      add_momentum(state.grid.side[side], state.grid, Spline(state.grid.column_of(p.x[i])),
-                   Spline(state.grid.row_of(p.y[i])), p.volume[i] * state.density, p.velocity_x[i], p.velocity_y[i]);
+    for (std::size_t i = p.begin[side]; i < p.begin[side + 1]; i += lane_count)
+      Stencil(state.grid, load(&p.x[i]), load(&p.y[i]))
+          .add_momentum(state.grid.side[side].momentum.data(), state.grid.side[side].mass.data(),
+                        load(&p.volume[i]) * state.density, load(&p.velocity_x[i]), load(&p.velocity_y[i]));
 }
+
+namespace {
+
+/// 1/m of eight nodes, zero where they are empty.
+Lanes inverse_mass(const VelocityField& field, std::size_t node, double smallest) {
+  const Lanes mass = load(&field.mass[node]);
+  return mass > smallest ? 1.0 / mass : Lanes{};
+}
+/// A scalar of eight nodes as the factor of their interleaved vectors: the first four nodes, the last four.
+std::array<Lanes, 2> both_components(Lanes v) {
+  return {__builtin_shufflevector(v, v, 0, 0, 1, 1, 2, 2, 3, 3), __builtin_shufflevector(v, v, 4, 4, 5, 5, 6, 6, 7, 7)};
+}
+
+}  // namespace
 
 void project_velocity(State& state) {
   for (VelocityField& field : state.grid.side) {
-    clear(field.force);
-    const std::size_t count = state.grid.nodes();
-    for (std::size_t node = 0; node < count; ++node) {
-      const double inverse = field.mass[node] > state.smallest_mass ? 1.0 / field.mass[node] : 0.0;
-      field.velocity[2 * node] = field.momentum[2 * node] * inverse;
-      field.velocity[2 * node + 1] = field.momentum[2 * node + 1] * inverse;
-    }
+    state.grid.each_batch(field, [&](std::size_t node) {
+      const auto inverse = both_components(inverse_mass(field, node, state.smallest_mass));
+      for (std::size_t half = 0; half < 2; ++half) {
+        const std::size_t k = 2 * node + half * lane_count;
+        store(&field.velocity[k], load(&field.momentum[k]) * inverse[half]);
+        store(&field.force[k], Lanes{});
+      }
+    });
     hold_boundary(state.grid, [&](std::size_t node, bool both) {
       field.velocity[2 * node] = 0.0;
       if (both) field.velocity[2 * node + 1] = 0.0;
@@ -79,50 +80,31 @@ void stress_particles(State& state, const Law& material) {
   for (std::size_t side = 0; side < 2; ++side) {
     VelocityField& field = state.grid.side[side];
     for (std::size_t first = p.begin[side]; first < p.begin[side + 1]; first += lane_count) {
-      double xx[lane_count], xy[lane_count], yx[lane_count], yy[lane_count];
-      int column[lane_count], row[lane_count];
-      double fx[lane_count], fy[lane_count];
-      for (std::size_t lane = 0; lane < lane_count; ++lane) {
-        const Spline sx(grid.column_of(p.x[first + lane])), sy(grid.row_of(p.y[first + lane]));
-        Lanes value{}, rise{};  // sum over rows, weighted by w_y and by its slope
-        for (int j = 0; j < 3; ++j) {
-          const Lanes v = load(&field.velocity[2 * grid.node(sx.base, sy.base + j)]);
-          value += sy.weight(j) * v;
-          rise += sy.slope(j) * v;
-        }
-        const Lanes along_x = sx.row_slopes() * value, along_y = sx.row_weights() * rise;
-        xx[lane] = strain_x * sum_x(along_x);
-        yx[lane] = strain_x * sum_y(along_x);
-        xy[lane] = strain_y * sum_x(along_y);
-        yy[lane] = strain_y * sum_y(along_y);
-        column[lane] = sx.base;
-        row[lane] = sy.base;
-        fx[lane] = sx.f;
-        fy[lane] = sy.f;
+      const Stencil stencil(grid, load(&p.x[first]), load(&p.y[first]));
+      const auto [value, rise] = stencil.value_and_rise(field.velocity.data());
+      Lanes xx{}, xy{}, yx{}, yy{};
+      for (std::size_t i = 0; i < 3; ++i) {
+        xx += stencil.slope_x[i] * value[2 * i];
+        yx += stencil.slope_x[i] * value[2 * i + 1];
+        xy += stencil.weight_x[i] * rise[2 * i];
+        yy += stencil.weight_x[i] * rise[2 * i + 1];
       }
-      laws::MaterialPoints points{&p.stress_xx[first],
-                                  &p.stress_yy[first],
-                                  &p.stress_zz[first],
-                                  &p.stress_xy[first],
-                                  &p.plastic_strain[first],
-                                  nullptr,
-                                  nullptr};
-      if constexpr (Law::has_axes) {
-        points.axis_x = &p.axis_x[first];
-        points.axis_y = &p.axis_y[first];
+      laws::MaterialPoints points = p.material_points<Law::has_axes>(first);
+      mapped &=
+          material.update({.xx = strain_x * xx, .xy = strain_y * xy, .yx = strain_x * yx, .yy = strain_y * yy}, points);
+      p.set<Law::has_axes>(first, points);
+      const Lanes volume = load(&p.volume[first]);
+      const Lanes along = -grid.inverse_cell_x * volume, across = -grid.inverse_cell_y * volume;
+      const Lanes along_x = along * points.xx, along_y = along * points.xy;
+      const Lanes across_x = across * points.xy, across_y = across * points.yy;
+      std::array<Lanes, 6> by_weight, by_slope;
+      for (std::size_t i = 0; i < 3; ++i) {
+        by_weight[2 * i] = stencil.slope_x[i] * along_x;
+        by_weight[2 * i + 1] = stencil.slope_x[i] * along_y;
+        by_slope[2 * i] = stencil.weight_x[i] * across_x;
+        by_slope[2 * i + 1] = stencil.weight_x[i] * across_y;
       }
-      mapped &= material.update(lane_count, {xx, xy, yx, yy}, points);
-      for (std::size_t lane = 0; lane < lane_count; ++lane) {
-        const std::size_t i = first + lane;
-        const Spline sx(column[lane], fx[lane]), sy(row[lane], fy[lane]);
-        const double along = -p.volume[i] * grid.inverse_cell_x, across = -p.volume[i] * grid.inverse_cell_y;
-        const Lanes by_slope = sx.row_slopes() * pairs(along * p.stress_xx[i], along * p.stress_xy[i]);
-        const Lanes by_weight = sx.row_weights() * pairs(across * p.stress_xy[i], across * p.stress_yy[i]);
-        for (int j = 0; j < 3; ++j) {
-          double* to = &field.force[2 * grid.node(sx.base, sy.base + j)];
-          store(to, load(to) + sy.weight(j) * by_slope + sy.slope(j) * by_weight);
-        }
-      }
+      stencil.add(field.force.data(), by_weight, by_slope);
     }
   }
   if (!mapped && state.breakdown.empty()) state.breakdown = "the return mapping of the material found no solution";
@@ -135,25 +117,25 @@ void update_stress(State& state, const laws::Material& material) {
 }
 
 void accelerate(State& state) {
-  const double dt = state.step;
   for (VelocityField& field : state.grid.side) {
-    const std::size_t count = state.grid.nodes();
-    for (std::size_t node = 0; node < count; ++node) {
-      const double impulse = field.mass[node] > state.smallest_mass ? dt / field.mass[node] : 0.0;
-      for (std::size_t k = 2 * node; k < 2 * node + 2; ++k) {
-        field.change[k] = impulse * field.force[k];
-        field.next_velocity[k] = field.velocity[k] + field.change[k];
-      }
-    }
+    // A node that is held loses what momentum it was given.
     hold_boundary(state.grid, [&](std::size_t node, bool both) {
-      const double inverse = field.mass[node] > state.smallest_mass ? 1.0 / field.mass[node] : 0.0;
+      const double mass = field.mass[node];
       for (std::size_t k = 2 * node; k < 2 * node + (both ? 2 : 1); ++k) {
-        field.next_velocity[k] = 0.0;
-        field.change[k] = -field.momentum[k] * inverse;
+        field.velocity[k] = mass > state.smallest_mass ? field.momentum[k] / mass : 0.0;
+        field.force[k] = -field.momentum[k] / state.step;
       }
     });
-    clear(field.mass);
-    clear(field.momentum);
+    const Lanes none{};
+    state.grid.each_batch(field, [&](std::size_t node) {
+      const auto impulse = both_components(state.step * inverse_mass(field, node, state.smallest_mass));
+      for (std::size_t half = 0; half < 2; ++half) {
+        const std::size_t k = 2 * node + half * lane_count;
+        store(&field.change[k], load(&field.force[k]) * impulse[half]);
+        store(&field.momentum[k], none);
+      }
+      store(&field.mass[node], none);
+    });
   }
 }
 
@@ -166,49 +148,40 @@ void advance_all(State& state, double rate) {
   Particles& p = state.particles;
   const Grid& grid = state.grid;
   const double dt = state.step;
-  double lost = 0.0;
+  Lanes lost{}, outside{};
   for (std::size_t side = 0; side < 2; ++side) {
     VelocityField& field = state.grid.side[side];
-    for (std::size_t i = p.begin[side]; i < p.begin[side + 1]; ++i) {
-      const Spline sx(grid.column_of(p.x[i])), sy(grid.row_of(p.y[i]));
-      Lanes next{}, change{}, target{};
-      for (int j = 0; j < 3; ++j) {
-        const std::size_t node = 2 * grid.node(sx.base, sy.base + j);
-        next += sy.weight(j) * load(&field.next_velocity[node]);
-        change += sy.weight(j) * load(&field.change[node]);
-        if constexpr (blend == Blend::xpic) target += sy.weight(j) * load(&field.filtered[node]);
-      }
-      const Lanes weights = sx.row_weights();
-      next *= weights;
-      change *= weights;
-      const double move_x = sum_x(next), move_y = sum_y(next);
-      const double mass = p.volume[i] * state.density;
-      double vx = p.velocity_x[i] + sum_x(change), vy = p.velocity_y[i] + sum_y(change);
+    for (std::size_t first = p.begin[side]; first < p.begin[side + 1]; first += lane_count) {
+      const Lanes x = load(&p.x[first]), y = load(&p.y[first]), mass = load(&p.volume[first]) * state.density;
+      const Stencil stencil(grid, x, y);
+      const auto [old_x, old_y] = stencil.sum(field.velocity.data());
+      const auto [change_x, change_y] = stencil.sum(field.change.data());
+      const Lanes move_x = old_x + change_x, move_y = old_y + change_y;
+      Lanes vx = load(&p.velocity_x[first]) + change_x, vy = load(&p.velocity_y[first]) + change_y;
       if constexpr (blend != Blend::none) {
-        double target_x = move_x, target_y = move_y;
+        Lanes target_x = move_x, target_y = move_y;
         if constexpr (blend == Blend::xpic) {
-          target *= weights;
-          target_x = sum_x(target);
-          target_y = sum_y(target);
+          const auto filtered = stencil.sum(field.filtered.data());
+          target_x = filtered[0];
+          target_y = filtered[1];
         }
-        const double flip_x = vx, flip_y = vy;
+        const Lanes flip_x = vx, flip_y = vy;
         vx += rate * (target_x - vx);
         vy += rate * (target_y - vy);
         lost += 0.5 * mass * (flip_x * flip_x + flip_y * flip_y - vx * vx - vy * vy);
       }
-      p.velocity_x[i] = vx;
-      p.velocity_y[i] = vy;
-      p.x[i] += dt * move_x;
-      p.y[i] += dt * move_y;
-      const double column = grid.column_of(p.x[i]), row = grid.row_of(p.y[i]);
-      if (!grid.holds(column, row)) [[unlikely]] {
-        state.breakdown = "a particle left the grid or its position is not a number";
-        return;
-      }
-      add_momentum(field, grid, Spline(column), Spline(row), mass, vx, vy);
+      store(&p.velocity_x[first], vx);
+      store(&p.velocity_y[first], vy);
+      const Lanes next_x = x + dt * move_x, next_y = y + dt * move_y;
+      store(&p.x[first], next_x);
+      store(&p.y[first], next_y);
+      const Stencil next(grid, next_x, next_y);
+      outside = next.outside(outside);
+      next.add_momentum(field.momentum.data(), field.mass.data(), mass, vx, vy);
     }
   }
-  state.work.damping += lost;
+  if (sum(outside) > 0.0) state.breakdown = "a particle left the grid or its position is not a number";
+  state.work.damping += sum(lost);
 }
 
 }  // namespace

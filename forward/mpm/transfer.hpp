@@ -15,7 +15,7 @@ void project_velocity(State& state);
 /// f_i = -sum_p V tau grad w_ip, in one pass over the particles.
 void update_stress(State& state, const laws::Material& material);
 
-/// New grid velocities v + dt f/m and their change, under the fixed boundary.
+/// The change dt f/m of the grid velocities, under the fixed boundary; makes room for the momentum of the next step.
 void accelerate(State& state);
 
 /// Moves the particles (FLIP; blended with a share `pic` of PIC, whose loss is booked as damping) and gathers their

@@ -1,8 +1,11 @@
 #include "forward/mpm/window.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <span>
 
 #include "forward/mpm/tool.hpp"
 #include "forward/mpm/transfer.hpp"
@@ -93,7 +96,44 @@ void book_retired(State& state, const laws::Material& material, std::size_t i) {
       0.5 * volume * state.density * (p.velocity_x[i] * p.velocity_x[i] + p.velocity_y[i] * p.velocity_y[i]);
 }
 
-/// Keeps the particles that stand inside the window, sorted by (side, cell row, cell), each side padded to whole
+/// How far material may move between two sorts, in cell lengths: the tool moves one.
+constexpr int largest_move = 2;
+
+/// The part of each row that particles can touch until the next sort. `count` holds how many have each node as the
+/// first of their three by three. A specimen in grips is sorted once and may touch every node.
+void find_spans(const Grid& grid, VelocityField& field, std::span<const std::size_t> count, bool everywhere) {
+  using Span = VelocityField::Span;
+  field.spans.assign(static_cast<std::size_t>(grid.rows), everywhere ? Span{0, grid.stride} : Span{grid.stride, 0});
+  if (everywhere) return;
+  const int across = largest_move * static_cast<int>(std::ceil(grid.cell_x / grid.cell_y));
+  for (int j = 0; j < grid.rows; ++j) {
+    int first = grid.stride, last = -1;
+    for (int i = 0; i < grid.columns; ++i)
+      if (count[grid.node(i, j)] > 0) {
+        first = std::min(first, i);
+        last = i;
+      }
+    if (last < 0) continue;
+    constexpr int batch = static_cast<int>(lane_count);
+    const int begin = std::max(0, first - largest_move) / batch * batch;
+    const int end = std::min(grid.stride, (last + 3 + largest_move + batch - 1) / batch * batch);
+    for (int row = std::max(0, j - across); row <= std::min(grid.rows - 1, j + 2 + across); ++row) {
+      Span& span = field.spans[static_cast<std::size_t>(row)];
+      span = {std::min(span.begin, begin), std::max(span.end, end)};
+    }
+  }
+}
+
+/// Were all nodes of a particle within the spans? The grid has moved by a column since they were laid.
+bool has_room(const Grid& grid, const VelocityField& field, int column, int row) {
+  const auto in_span = [&](int j) {
+    const VelocityField::Span& span = field.spans[static_cast<std::size_t>(j)];
+    return column + 1 >= span.begin && column + 4 <= span.end;
+  };
+  return row >= 0 && row + 2 < grid.rows && in_span(row) && in_span(row + 2);
+}
+
+/// Keeps the particles that stand inside the window, sorted by (side, cell row, cell), each side dealt out in whole
 /// batches. The side of entry i is told by `side_of`.
 void sort_into_batches(State& state, const Scene& scene, const std::vector<Side>& side_of) {
   Particles& p = state.particles;
@@ -109,22 +149,30 @@ void sort_into_batches(State& state, const Scene& scene, const std::vector<Side>
       book_retired(state, scene.material, i);
       continue;
     }
-    const auto node =
-        grid.node(static_cast<int>(grid.column_of(p.x[i]) - 0.5), static_cast<int>(grid.row_of(p.y[i]) - 0.5));
+    const int column = static_cast<int>(grid.column_of(p.x[i]) - 0.5);
+    const int row = static_cast<int>(grid.row_of(p.y[i]) - 0.5);
+    const bool was_here = i < p.begin[2];  // and not fed just now
+    if (was_here && !has_room(grid, state.grid.side[side_of[i]], column, row)) [[unlikely]]
+      state.breakdown = fmt::format("material moved more than {} cells while the tool moved one", largest_move);
+    const std::size_t node = grid.node(column, row);
     bin[i] = (side_of[i] == above ? cells : 0) + node;
     ++start[bin[i] + 1];
   }
+  for (std::size_t side = 0; side < 2; ++side)
+    find_spans(grid, state.grid.side[side], std::span(start).subspan(side * cells + 1, cells), scene.grips.has_value());
   std::partial_sum(start.begin(), start.end(), start.begin());
   const std::size_t kept_below = start[cells], kept = start[2 * cells];
   const auto padded = [](std::size_t n) { return (n + lane_count - 1) / lane_count * lane_count; };
-  const std::size_t shift_above = padded(kept_below) - kept_below;
   p.begin = {0, padded(kept_below), padded(kept_below) + padded(kept - kept_below)};
 
   std::vector<std::size_t> source(p.begin[2], nowhere);
   for (std::size_t i = 0; i < p.size(); ++i) {
     if (bin[i] == nowhere) continue;
     const std::size_t place = start[bin[i]]++;
-    source[bin[i] >= cells ? place + shift_above : place] = i;
+    const std::size_t side = bin[i] >= cells ? 1 : 0, first = p.begin[side];
+    // Each lane walks through its own part of the side: a batch then never adds twice to one node, which would wait.
+    const std::size_t rank = place - (side ? kept_below : 0), batches = (p.begin[side + 1] - first) / lane_count;
+    source[first + rank % batches * lane_count + rank / batches] = i;
   }
   for (const Particles::Field& field : p.fields()) {
     std::vector<double> sorted(p.begin[2], field.at_rest);
@@ -184,6 +232,8 @@ State lay_out(const Scene& scene) {
   grid.inverse_cell_x = 1.0 / grid.cell_x;
   grid.inverse_cell_y = 1.0 / grid.cell_y;
   grid.columns = cells_along(scene.window.behind) + cells_along(scene.window.ahead) + 2 * margin;
+  constexpr int batch = static_cast<int>(lane_count);
+  grid.stride = (grid.columns + batch - 1) / batch * batch;
   grid.rows = cells_up(scene.window.below) + cells_up(scene.window.above) + 2 * margin;
   grid.origin_x = -(cells_along(scene.window.behind) + margin) * grid.cell_x;
   // Two node rows below the block's lower end hold it. The crack plane lies midway between two rows: with a row in the
@@ -195,7 +245,7 @@ State lay_out(const Scene& scene) {
   constexpr std::size_t overread = lane_count;  // a row of three nodes is read as eight numbers
   for (VelocityField& field : grid.side) {
     field.mass.assign(nodes + overread, 0.0);
-    for (auto* values : {&field.momentum, &field.velocity, &field.next_velocity, &field.change, &field.force})
+    for (auto* values : {&field.momentum, &field.velocity, &field.change, &field.force})
       values->assign(2 * nodes + overread, 0.0);
   }
   state.density = laws::density(scene.material);

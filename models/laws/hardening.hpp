@@ -3,12 +3,14 @@
 #include <cmath>
 
 #include "models/base/parameter.hpp"
+#include "models/laws/lanes.hpp"
 
 namespace kerf::laws {
 
 // Flow stress against equivalent plastic strain, for any law whose plastic work is the integral of
 //     dw = flow_stress(eps) d eps.                                                             (1)
-// Each curve offers flow_stress, its slope, the work (1) since the virgin state, and its keys in a file. None softens:
+// Each curve offers flow_stress and its slope, of one point or of eight, the work (1) since the virgin state, and its
+// keys in a file. None softens:
 // a local law that softens puts its whole strain into one row of cells.
 
 /// sigma_y + H eps.
@@ -23,6 +25,8 @@ struct LinearHardening {
 
   double flow_stress(double eps) const { return yield_stress + modulus * eps; }
   double slope(double) const { return modulus; }
+  Lanes flow_stress(Lanes eps) const { return yield_stress + modulus * eps; }
+  Lanes slope(Lanes) const { return all_lanes(modulus); }
   double work(double eps) const { return (yield_stress + 0.5 * modulus * eps) * eps; }
 };
 
@@ -40,6 +44,12 @@ struct PowerHardening {
   double flow_stress(double eps) const { return yield_stress * (1.0 + coefficient * std::pow(eps, exponent)); }
   double slope(double eps) const {
     return coefficient == 0.0 ? 0.0 : yield_stress * coefficient * exponent * std::pow(eps, exponent - 1.0);
+  }
+  Lanes flow_stress(Lanes eps) const {
+    return each_lane(eps, [this](double e) { return flow_stress(e); });
+  }
+  Lanes slope(Lanes eps) const {
+    return each_lane(eps, [this](double e) { return slope(e); });
   }
   double work(double eps) const {
     return yield_stress * eps * (1.0 + coefficient * std::pow(eps, exponent) / (exponent + 1.0));
@@ -62,6 +72,12 @@ struct SaturatingHardening {
   }
   double slope(double eps) const {
     return (saturation_stress - yield_stress) / saturation_strain * std::exp(-eps / saturation_strain);
+  }
+  Lanes flow_stress(Lanes eps) const {
+    return each_lane(eps, [this](double e) { return flow_stress(e); });
+  }
+  Lanes slope(Lanes eps) const {
+    return each_lane(eps, [this](double e) { return slope(e); });
   }
   double work(double eps) const {
     return saturation_stress * eps +

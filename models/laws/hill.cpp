@@ -209,130 +209,83 @@ double Hill::elastic_energy(const StressPoint& p) const {
          s[0][1] * xx * yy + s[0][2] * xx * p.zz + s[1][2] * yy * p.zz;
 }
 
-bool Hill::update(std::size_t n, StrainIncrement l, MaterialPoints points) const {
-  // Without a power the flow stress is arithmetic and the whole return map runs in SIMD.
-  if (hardening_.coefficient == 0.0 || hardening_.exponent == 1.0)
-    return update_with(LinearHardening{.yield_stress = hardening_.yield_stress,
-                                       .modulus = hardening_.yield_stress * hardening_.coefficient},
-                       n, l, points);
-  return update_with(hardening_, n, l, points);
+bool Hill::update(const StrainIncrement& l, MaterialPoints& points) const {
+  auto& [xx, yy, zz, xy, plastic_strain, ax, ay] = points;
+  // Stress seen from the old axes is the turned stress seen from the turned axes; the strain is seen from these.
+  const Lanes cc = ax * ax, ss = ay * ay, cs = ax * ay;
+  const Lanes old_xx = cc * xx + ss * yy + 2.0 * cs * xy, old_yy = ss * xx + cc * yy - 2.0 * cs * xy;
+  const Lanes old_xy = cs * (yy - xx) + (cc - ss) * xy;
+  const auto [c, s] = step_rotation(l.xy, l.yx);
+  const Lanes turned_x = c * ax - s * ay, turned_y = s * ax + c * ay;
+  const Lanes unit = 1.5 - 0.5 * (turned_x * turned_x + turned_y * turned_y);  // rounding must not add up
+  ax = unit * turned_x;
+  ay = unit * turned_y;
+  const Lanes CC = ax * ax, SS = ay * ay, CS = ax * ay, shear = l.xy + l.yx;
+  const Lanes e_xx = CC * l.xx + SS * l.yy + CS * shear, e_yy = SS * l.xx + CC * l.yy - CS * shear;
+  const Lanes e_xy = 2.0 * CS * (l.yy - l.xx) + (CC - SS) * shear;
+  xx = old_xx + c_xx_ * e_xx + c_xy_ * e_yy;
+  yy = old_yy + c_xy_ * e_xx + c_yy_ * e_yy;
+  zz += c_xz_ * e_xx + c_yz_ * e_yy;
+  xy = old_xy + c_shear_ * e_xy;
+
+  const std::array<Lanes, 3> z{modes_[0][0] * xx + modes_[0][1] * yy + modes_[0][2] * zz,
+                               modes_[1][0] * xx + modes_[1][1] * yy + modes_[1][2] * zz, shear_mode_ * xy};
+  const Lanes square = z[0] * z[0] + z[1] * z[1] + z[2] * z[2];
+  const Lanes size = abs(xx) + abs(yy) + abs(zz) + abs(xy) + abs(ax);
+  bool sound = !any(!(size < infinite));
+  if (any(square > hardening_.yield_stress * hardening_.yield_stress)) {
+    // Without a power the flow stress is arithmetic and the whole return map runs in SIMD.
+    const bool linear = hardening_.coefficient == 0.0 || hardening_.exponent == 1.0;
+    sound &= linear ? return_to_yield(LinearHardening{.yield_stress = hardening_.yield_stress,
+                                                      .modulus = hardening_.yield_stress * hardening_.coefficient},
+                                      z, sqrt(square), points)
+                    : return_to_yield(hardening_, z, sqrt(square), points);
+  }
+
+  const Lanes m_xx = xx, m_yy = yy, m_xy = xy;
+  xx = CC * m_xx + SS * m_yy - 2.0 * CS * m_xy;
+  yy = SS * m_xx + CC * m_yy + 2.0 * CS * m_xy;
+  xy = CS * (m_xx - m_yy) + (CC - SS) * m_xy;
+  return sound;
 }
 
 template <class Hardening>
-bool Hill::update_with(const Hardening& hardening, std::size_t n, StrainIncrement l, MaterialPoints points) const {
+bool Hill::return_to_yield(const Hardening& hardening, const std::array<Lanes, 3>& z, Lanes q,
+                           MaterialPoints& points) const {
   const auto [D0, D1, D2] = stiffness_;
   // The weakest mode there is bounds the root of (5) from above.
   double softest = infinite;
   for (const double D : stiffness_)
     if (D > 0.0) softest = std::min(softest, D);
-  double unsound = 0.0;
-  bool converged = true;
-  for (std::size_t first = 0; first < n; first += batch_size) {
-    const std::size_t count = std::min(batch_size, n - first);
-    Batch xx{}, yy{}, zz{}, xy{}, eps{}, ax{}, ay{}, d_xx{}, d_yy{}, d_xy{}, spin_c{}, spin_s{};
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::size_t k = first + i;
-      xx[i] = points.xx[k];
-      yy[i] = points.yy[k];
-      zz[i] = points.zz[k];
-      xy[i] = points.xy[k];
-      eps[i] = points.plastic_strain[k];
-      ax[i] = points.axis_x[k];
-      ay[i] = points.axis_y[k];
-      d_xx[i] = l.xx[k];
-      d_yy[i] = l.yy[k];
-      d_xy[i] = l.xy[k] + l.yx[k];
-      const auto [c, s] = step_rotation(l.xy[k], l.yx[k]);
-      spin_c[i] = c;
-      spin_s[i] = s;
-    }
+  const Lanes flow_now = hardening.flow_stress(points.plastic_strain);
+  const Lanes upper = q > flow_now * (1.0 + return_tolerance) ? (q / flow_now - 1.0) / softest : Lanes{};
+  if (!any(upper > 0.0)) return true;
 
-    // Stress seen from the old axes is the turned stress seen from the turned axes; the strain is seen from these.
-    Batch z0{}, z1{}, z2{}, q{};
-    for (std::size_t i = 0; i < batch_size; ++i) {
-      const double cc = ax[i] * ax[i], ss = ay[i] * ay[i], cs = ax[i] * ay[i];
-      const double old_xx = cc * xx[i] + ss * yy[i] + 2.0 * cs * xy[i];
-      const double old_yy = ss * xx[i] + cc * yy[i] - 2.0 * cs * xy[i];
-      const double old_xy = cs * (yy[i] - xx[i]) + (cc - ss) * xy[i];
-      const double turned_x = spin_c[i] * ax[i] - spin_s[i] * ay[i], turned_y = spin_s[i] * ax[i] + spin_c[i] * ay[i];
-      const double unit = 1.5 - 0.5 * (turned_x * turned_x + turned_y * turned_y);  // rounding must not add up
-      ax[i] = unit * turned_x;
-      ay[i] = unit * turned_y;
-      const double CC = ax[i] * ax[i], SS = ay[i] * ay[i], CS = ax[i] * ay[i];
-      const double e_xx = CC * d_xx[i] + SS * d_yy[i] + CS * d_xy[i];
-      const double e_yy = SS * d_xx[i] + CC * d_yy[i] - CS * d_xy[i];
-      const double e_xy = 2.0 * CS * (d_yy[i] - d_xx[i]) + (CC - SS) * d_xy[i];
-      xx[i] = old_xx + c_xx_ * e_xx + c_xy_ * e_yy;
-      yy[i] = old_yy + c_xy_ * e_xx + c_yy_ * e_yy;
-      zz[i] += c_xz_ * e_xx + c_yz_ * e_yy;
-      xy[i] = old_xy + c_shear_ * e_xy;
-      z0[i] = modes_[0][0] * xx[i] + modes_[0][1] * yy[i] + modes_[0][2] * zz[i];
-      z1[i] = modes_[1][0] * xx[i] + modes_[1][1] * yy[i] + modes_[1][2] * zz[i];
-      z2[i] = shear_mode_ * xy[i];
-      q[i] = std::sqrt(z0[i] * z0[i] + z1[i] * z1[i] + z2[i] * z2[i]);
-      const double size = std::abs(xx[i]) + std::abs(yy[i]) + std::abs(zz[i]) + std::abs(xy[i]) + std::abs(ax[i]);
-      unsound = size < infinite ? unsound : 1.0;
-    }
-
-    Batch upper{};
-    double yields = 0.0;
-    for (std::size_t i = 0; i < batch_size; ++i) {
-      if (q[i] > hardening.yield_stress) {
-        const double flow = hardening.flow_stress(eps[i]);
-        upper[i] = q[i] > flow * (1.0 + return_tolerance) ? (q[i] / flow - 1.0) / softest : 0.0;
-        yields = upper[i] > 0.0 ? 1.0 : yields;
-      }
-    }
-    if (yields > 0.0) {
-      Batch m{};
-      converged &= find_roots(
-          [&](const Batch& at, Batch& value, Batch& slope) {
-            for (std::size_t i = 0; i < batch_size; ++i) {
-              // One division for the three factors 1/(1 + m D), one for 1/q.
-              const double f0 = 1.0 + at[i] * D0, f1 = 1.0 + at[i] * D1, f2 = 1.0 + at[i] * D2;
-              const double all = 1.0 / (f0 * f1 * f2);
-              const double k0 = f1 * f2 * all, k1 = f0 * f2 * all, k2 = f0 * f1 * all;
-              const double s0 = z0[i] * k0, s1 = z1[i] * k1, s2 = z2[i] * k2;
-              const double now = std::sqrt(s0 * s0 + s1 * s1 + s2 * s2 + 1e-300), inverse = 1.0 / now;
-              const double w0 = k0 * s0 * s0, w1 = k1 * s1 * s1, w2 = k2 * s2 * s2;
-              const double now_slope = -(D0 * w0 + D1 * w1 + D2 * w2) * inverse;
-              const double strain_slope = (w0 + w1 + w2) * inverse;
-              const double strain = eps[i] + at[i] * now;
-              const double flow = hardening.flow_stress(strain);
-              value[i] = flow * inverse - 1.0;
-              slope[i] = (hardening.slope(strain) * strain_slope - flow * now_slope * inverse) * inverse;
-            }
-          },
-          upper, m);
-      for (std::size_t i = 0; i < batch_size; ++i) {
-        const double s0 = z0[i] / (1.0 + m[i] * D0), s1 = z1[i] / (1.0 + m[i] * D1), s2 = z2[i] / (1.0 + m[i] * D2);
-        eps[i] += m[i] * std::sqrt(s0 * s0 + s1 * s1 + s2 * s2);
-        xx[i] -= m[i] * (return_[0][0] * s0 + return_[1][0] * s1);
-        yy[i] -= m[i] * (return_[0][1] * s0 + return_[1][1] * s1);
-        zz[i] -= m[i] * (return_[0][2] * s0 + return_[1][2] * s1);
-        xy[i] /= 1.0 + m[i] * D2;
-      }
-    }
-
-    for (std::size_t i = 0; i < batch_size; ++i) {
-      const double cc = ax[i] * ax[i], ss = ay[i] * ay[i], cs = ax[i] * ay[i];
-      const double m_xx = xx[i], m_yy = yy[i], m_xy = xy[i];
-      xx[i] = cc * m_xx + ss * m_yy - 2.0 * cs * m_xy;
-      yy[i] = ss * m_xx + cc * m_yy + 2.0 * cs * m_xy;
-      xy[i] = cs * (m_xx - m_yy) + (cc - ss) * m_xy;
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::size_t k = first + i;
-      points.xx[k] = xx[i];
-      points.yy[k] = yy[i];
-      points.zz[k] = zz[i];
-      points.xy[k] = xy[i];
-      points.plastic_strain[k] = eps[i];
-      points.axis_x[k] = ax[i];
-      points.axis_y[k] = ay[i];
-    }
-  }
-  return converged && unsound == 0.0;
+  Lanes m{};
+  const bool converged = find_roots(
+      [&](Lanes at, Lanes& value, Lanes& slope) {
+        // One division for the three factors 1/(1 + m D), one for 1/q.
+        const Lanes f0 = 1.0 + at * D0, f1 = 1.0 + at * D1, f2 = 1.0 + at * D2;
+        const Lanes all = 1.0 / (f0 * f1 * f2);
+        const Lanes k0 = f1 * f2 * all, k1 = f0 * f2 * all, k2 = f0 * f1 * all;
+        const Lanes s0 = z[0] * k0, s1 = z[1] * k1, s2 = z[2] * k2;
+        const Lanes now = sqrt(s0 * s0 + s1 * s1 + s2 * s2 + 1e-300), inverse = 1.0 / now;
+        const Lanes w0 = k0 * s0 * s0, w1 = k1 * s1 * s1, w2 = k2 * s2 * s2;
+        const Lanes now_slope = -(D0 * w0 + D1 * w1 + D2 * w2) * inverse;
+        const Lanes strain_slope = (w0 + w1 + w2) * inverse;
+        const Lanes strain = points.plastic_strain + at * now;
+        const Lanes flow = hardening.flow_stress(strain);
+        value = flow * inverse - 1.0;
+        slope = (hardening.slope(strain) * strain_slope - flow * now_slope * inverse) * inverse;
+      },
+      upper, m);
+  const Lanes s0 = z[0] / (1.0 + m * D0), s1 = z[1] / (1.0 + m * D1), s2 = z[2] / (1.0 + m * D2);
+  points.plastic_strain += m * sqrt(s0 * s0 + s1 * s1 + s2 * s2);
+  points.xx -= m * (return_[0][0] * s0 + return_[1][0] * s1);
+  points.yy -= m * (return_[0][1] * s0 + return_[1][1] * s1);
+  points.zz -= m * (return_[0][2] * s0 + return_[1][2] * s1);
+  points.xy /= 1.0 + m * D2;
+  return converged;
 }
 
 }  // namespace kerf::laws

@@ -81,13 +81,15 @@ class Hill {
   double elastic_energy(const StressPoint& point) const;
   double plastic_work(double eps_p) const { return hardening_.work(eps_p); }
 
-  /// All of the above over n points. False when a stress is no longer a number or a return does not converge; the
+  /// All of the above for eight points. False when a stress is no longer a number or a return does not converge; the
   /// points then hold nothing to go on with.
-  bool update(std::size_t n, StrainIncrement l, MaterialPoints points) const;
+  bool update(const StrainIncrement& l, MaterialPoints& points) const;
 
  private:
+  /// Equations (4) and (5), from the stress in material axes and its Z sigma.
   template <class Hardening>
-  bool update_with(const Hardening& hardening, std::size_t n, StrainIncrement l, MaterialPoints points) const;
+  bool return_to_yield(const Hardening& hardening, const std::array<Lanes, 3>& z, Lanes q,
+                       MaterialPoints& points) const;
 
   Constants constants_;
   PowerHardening hardening_;

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <limits>
 #include <numbers>
 #include <type_traits>
@@ -59,90 +57,57 @@ struct J2 {
   /// Dissipated energy per reference volume (MPa) after the plastic strain `eps_p`.
   double plastic_work(double eps_p) const { return hardening.work(eps_p); }
 
-  /// Eqs. (1)-(3) over n points. False when a stress is no longer a number or a return does not converge; the points
+  /// Eqs. (1)-(3) for eight points. False when a stress is no longer a number or a return does not converge; the points
   /// then hold nothing to go on with.
-  bool update(std::size_t n, StrainIncrement l, MaterialPoints tau) const {
-    if constexpr (std::is_same_v<Hardening, LinearHardening>) return update_linear(n, l, tau);
-    return update_curved(n, l, tau);
+  bool update(const StrainIncrement& l, MaterialPoints& tau) const {
+    const double G = shear_modulus(), lambda = lame();
+    const auto [c, s] = step_rotation(l.xy, l.yx);
+    const Lanes cc = c * c, ss = s * s, cs = c * s;
+    const Lanes volumetric = lambda * (l.xx + l.yy);
+    const Lanes xx = cc * tau.xx + ss * tau.yy - 2.0 * cs * tau.xy + volumetric + 2.0 * G * l.xx;
+    const Lanes yy = ss * tau.xx + cc * tau.yy + 2.0 * cs * tau.xy + volumetric + 2.0 * G * l.yy;
+    const Lanes xy = cs * (tau.xx - tau.yy) + (cc - ss) * tau.xy + G * (l.xy + l.yx);
+    const Lanes zz = tau.zz + volumetric;
+    const Lanes mean = (xx + yy + zz) * (1.0 / 3.0), sxx = xx - mean, syy = yy - mean, szz = zz - mean;
+    const Lanes square = 1.5 * (sxx * sxx + syy * syy + szz * szz + 2.0 * xy * xy);
+    tau.xx = xx;
+    tau.yy = yy;
+    tau.zz = zz;
+    tau.xy = xy;
+    if (any(!(square < std::numeric_limits<double>::infinity()))) return false;
+    // No curve softens: where none of the eight has reached the first yield stress, there is nothing to return.
+    if (!any(square > hardening.yield_stress * hardening.yield_stress)) return true;
+
+    const Lanes q = sqrt(square);
+    Lanes x{};
+    const bool converged = return_to_yield(q, tau.plastic_strain, x);
+    const Lanes keep = 1.0 - 3.0 * G * x / (q + 1e-300);
+    tau.xx = mean + keep * sxx;
+    tau.yy = mean + keep * syy;
+    tau.zz = mean + keep * szz;
+    tau.xy = keep * xy;
+    tau.plastic_strain += x;
+    return converged;
   }
 
  private:
-  /// A stress after (1), split into mean and deviator.
-  struct Trial {
-    double mean, sxx, syy, szz, xy, q;
-  };
-  static Trial trial(std::size_t i, StrainIncrement l, MaterialPoints tau, double G, double lambda) {
-    const auto [c, s] = step_rotation(l.xy[i], l.yx[i]);
-    const double cc = c * c, ss = s * s, cs = c * s;
-    const double volumetric = lambda * (l.xx[i] + l.yy[i]);
-    const double xx = cc * tau.xx[i] + ss * tau.yy[i] - 2.0 * cs * tau.xy[i] + volumetric + 2.0 * G * l.xx[i];
-    const double yy = ss * tau.xx[i] + cc * tau.yy[i] + 2.0 * cs * tau.xy[i] + volumetric + 2.0 * G * l.yy[i];
-    const double xy = cs * (tau.xx[i] - tau.yy[i]) + (cc - ss) * tau.xy[i] + G * (l.xy[i] + l.yx[i]);
-    const double zz = tau.zz[i] + volumetric;
-    const double mean = (xx + yy + zz) / 3.0;
-    const double sxx = xx - mean, syy = yy - mean, szz = zz - mean;
-    const double q = std::sqrt(1.5 * (sxx * sxx + syy * syy + szz * szz + 2.0 * xy * xy)) + 1e-300;
-    return {.mean = mean, .sxx = sxx, .syy = syy, .szz = szz, .xy = xy, .q = q};
-  }
-  static void store(std::size_t i, const Trial& t, double keep, double yielding, MaterialPoints tau) {
-    tau.xx[i] = t.mean + keep * t.sxx;
-    tau.yy[i] = t.mean + keep * t.syy;
-    tau.zz[i] = t.mean + keep * t.szz;
-    tau.xy[i] = keep * t.xy;
-    tau.plastic_strain[i] += yielding;
-  }
-
-  /// Branch-free, so that the loop runs in SIMD lanes.
-  bool update_linear(std::size_t n, StrainIncrement l,
-                     MaterialPoints tau) const requires std::is_same_v<Hardening, LinearHardening> {
-    const double G = shear_modulus(), lambda = lame(), H = hardening.modulus, sigma_y = hardening.yield_stress;
-    double unsound = 0.0;
-    for (std::size_t i = 0; i < n; ++i) {
-      const Trial t = trial(i, l, tau, G, lambda);
-      const double excess = t.q - (sigma_y + H * tau.plastic_strain[i]);
-      const double yielding = excess > 0.0 ? excess / (3.0 * G + H) : 0.0;
-      unsound = t.q < std::numeric_limits<double>::infinity() ? unsound : 1.0;
-      store(i, t, 1.0 - 3.0 * G * yielding / t.q, yielding, tau);
+  /// The root x of (3), zero where (2) is not positive.
+  bool return_to_yield(Lanes q, Lanes plastic_strain, Lanes& x) const {
+    const double G = shear_modulus();
+    const Lanes excess = q - hardening.flow_stress(plastic_strain);
+    if constexpr (std::is_same_v<Hardening, LinearHardening>) {
+      x = (excess > 0.0 ? excess : Lanes{}) * (1.0 / (3.0 * G + hardening.modulus));
+      return true;
+    } else {
+      const Lanes upper = excess > return_tolerance * q ? excess / (3.0 * G) : Lanes{};
+      return find_roots(
+          [&](Lanes at, Lanes& value, Lanes& slope) {
+            const Lanes eps = plastic_strain + at;
+            value = (hardening.flow_stress(eps) + 3.0 * G * at) / q - 1.0;
+            slope = (hardening.slope(eps) + 3.0 * G) / q;
+          },
+          upper, x);
     }
-    return unsound == 0.0;
-  }
-
-  /// Flow stresses are asked for lane by lane: pow and exp have no SIMD form here, and lanes below the first yield
-  /// stress never need them.
-  bool update_curved(std::size_t n, StrainIncrement l, MaterialPoints tau) const {
-    const double G = shear_modulus(), lambda = lame();
-    bool converged = true;
-    for (std::size_t first = 0; first < n; first += batch_size) {
-      const std::size_t count = std::min(batch_size, n - first);
-      std::array<Trial, batch_size> trials{};
-      Batch upper{}, x{};
-      bool yields = false;
-      for (std::size_t i = 0; i < count; ++i) {
-        trials[i] = trial(first + i, l, tau, G, lambda);
-        const double q = trials[i].q;
-        if (q <= hardening.yield_stress) continue;
-        const double excess = q - hardening.flow_stress(tau.plastic_strain[first + i]);
-        if (excess <= return_tolerance * q) continue;
-        upper[i] = excess / (3.0 * G);
-        yields = true;
-      }
-      if (yields)
-        converged &= find_roots(
-            [&](const Batch& at, Batch& value, Batch& slope) {
-              for (std::size_t i = 0; i < batch_size; ++i) {
-                if (upper[i] == 0.0) continue;
-                const double eps = tau.plastic_strain[first + i] + at[i], q = trials[i].q;
-                value[i] = (hardening.flow_stress(eps) + 3.0 * G * at[i]) / q - 1.0;
-                slope[i] = (hardening.slope(eps) + 3.0 * G) / q;
-              }
-            },
-            upper, x);
-      for (std::size_t i = 0; i < count; ++i) {
-        converged &= trials[i].q < std::numeric_limits<double>::infinity();
-        store(first + i, trials[i], 1.0 - 3.0 * G * x[i] / trials[i].q, x[i], tau);
-      }
-    }
-    return converged;
   }
 };
 

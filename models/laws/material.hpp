@@ -17,8 +17,8 @@ using Material = std::variant<J2<LinearHardening>,      //
                               Hill>;
 
 template <class Law>
-concept MaterialLaw = requires(const Law& law, const Values& values, StressPoint stress, StrainIncrement strain,
-                               MaterialPoints points) {
+concept MaterialLaw = requires(const Law& law, const Values& values, StressPoint stress, const StrainIncrement& strain,
+                               MaterialPoints& points) {
   { Law::block() } -> std::same_as<Block>;
   { Law::from(values) } -> std::same_as<Law>;
   { Law::has_axes } -> std::convertible_to<bool>;
@@ -28,7 +28,7 @@ concept MaterialLaw = requires(const Law& law, const Values& values, StressPoint
   { law.shear_yield() } -> std::same_as<double>;
   { law.elastic_energy(stress) } -> std::same_as<double>;
   { law.plastic_work(0.0) } -> std::same_as<double>;
-  { law.update(std::size_t{8}, strain, points) } -> std::same_as<bool>;
+  { law.update(strain, points) } -> std::same_as<bool>;
 };
 
 inline double density(const Material& material) {

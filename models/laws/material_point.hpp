@@ -1,19 +1,18 @@
 #pragma once
 
-#include <cstddef>
+#include "models/laws/lanes.hpp"
 
 namespace kerf::laws {
 
-/// Velocity gradient times the time step, l_ij = dt d v_i / d x_j, one entry per material point.
+/// Velocity gradient times the time step, l_ij = dt d v_i / d x_j, of eight material points.
 struct StrainIncrement {
-  const double *xx, *xy, *yx, *yy;
+  Lanes xx, xy, yx, yy;
 };
 
-/// What the material laws update, structure of arrays: Kirchhoff stress (MPa) in the frame of the grid, the equivalent
-/// plastic strain, and the unit vector of the material's x axis. Laws without axes never look at the last two.
+/// What the material laws update: Kirchhoff stress (MPa) in the frame of the grid, the equivalent plastic strain, and
+/// the unit vector of the material's x axis, of eight material points. Laws without axes never look at the last two.
 struct MaterialPoints {
-  double *xx, *yy, *zz, *xy, *plastic_strain;
-  double *axis_x = nullptr, *axis_y = nullptr;
+  Lanes xx, yy, zz, xy, plastic_strain, axis_x, axis_y;
 };
 
 /// Stress of one point in the frame of the grid, with the material's x axis.
@@ -25,11 +24,11 @@ struct StressPoint {
 /// The rotation of one step: c and s of the spin (l_yx - l_xy)/2 by the half-angle tangent, so c^2 + s^2 = 1 exactly in
 /// real arithmetic whatever the step, and the angle is right to the third order.
 struct StepRotation {
-  double c, s;
+  Lanes c, s;
 };
-inline StepRotation step_rotation(double l_xy, double l_yx) {
-  const double half_spin = 0.25 * (l_yx - l_xy);
-  const double scale = 1.0 / (1.0 + half_spin * half_spin);
+inline StepRotation step_rotation(Lanes l_xy, Lanes l_yx) {
+  const Lanes half_spin = 0.25 * (l_yx - l_xy);
+  const Lanes scale = 1.0 / (1.0 + half_spin * half_spin);
   return {.c = (1.0 - half_spin * half_spin) * scale, .s = 2.0 * half_spin * scale};
 }
 

@@ -310,9 +310,13 @@ TEST(Hill, TheReturnMapLeavesNoResidual) {
     const Hill law(constants);
     const Eigen::Matrix4d c = stiffness(constants);
     const Criterion criterion(constants);
-    constexpr std::size_t n = 8;
+    constexpr std::size_t n = lane_count;
     for (int trial = 0; trial < 420; ++trial) {
-      double xx[n], xy[n], yx[n], yy[n], s_xx[n], s_yy[n], s_zz[n], s_xy[n], eps[n], ax[n], ay[n], old_eps[n];
+      StrainIncrement l{};
+      MaterialPoints points{};
+      auto& [xx, xy, yx, yy] = l;
+      auto& [s_xx, s_yy, s_zz, s_xy, eps, ax, ay] = points;
+      Lanes old_eps{};
       std::vector<Eigen::Vector4d> before;
       for (std::size_t i = 0; i < n; ++i) {
         const double size = std::pow(10.0, decades(random));
@@ -333,7 +337,7 @@ TEST(Hill, TheReturnMapLeavesNoResidual) {
         ax[i] = 1;
         ay[i] = 0;
       }
-      ASSERT_TRUE(law.update(n, {xx, xy, yx, yy}, {s_xx, s_yy, s_zz, s_xy, eps, ax, ay}));
+      ASSERT_TRUE(law.update(l, points));
       for (std::size_t i = 0; i < n; ++i) {
         ++tried;
         const Eigen::Vector4d stress(s_xx[i], s_yy[i], s_zz[i], s_xy[i]);

@@ -14,8 +14,19 @@ struct Point {
   template <class Law>
   bool drive(const Law& law, double l_xx, double l_xy, double l_yx, double l_yy) {
     const double before = rate(l_xx, l_xy, l_yx, l_yy);
-    const bool sound =
-        law.update(1, {&l_xx, &l_xy, &l_yx, &l_yy}, {&xx, &yy, &zz, &xy, &plastic_strain, &axis_x, &axis_y});
+    // Seven of the eight lanes rest.
+    const StrainIncrement l{Lanes{l_xx}, Lanes{l_xy}, Lanes{l_yx}, Lanes{l_yy}};
+    MaterialPoints points{Lanes{xx}, Lanes{yy}, Lanes{zz}, Lanes{xy}, Lanes{plastic_strain}, all_lanes(1.0), Lanes{}};
+    points.axis_x[0] = axis_x;
+    points.axis_y[0] = axis_y;
+    const bool sound = law.update(l, points);
+    xx = points.xx[0];
+    yy = points.yy[0];
+    zz = points.zz[0];
+    xy = points.xy[0];
+    plastic_strain = points.plastic_strain[0];
+    axis_x = points.axis_x[0];
+    axis_y = points.axis_y[0];
     work += 0.5 * (before + rate(l_xx, l_xy, l_yx, l_yy));
     return sound;
   }
