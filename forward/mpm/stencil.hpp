@@ -38,18 +38,14 @@ inline std::array<Lanes, 8> rows_of(const std::array<Lanes, 6>& column) {
     low[k] = __builtin_shufflevector(column[2 * k], column[2 * k + 1], 0, 8, 2, 10, 4, 12, 6, 14);
     high[k] = __builtin_shufflevector(column[2 * k], column[2 * k + 1], 1, 9, 3, 11, 5, 13, 7, 15);
   }
-  constexpr Lanes zero{};
-  const auto spread = [&](const Lanes* pair, Lanes& first, Lanes& second, Lanes& third, Lanes& fourth) {
-    const Lanes a = __builtin_shufflevector(pair[0], pair[1], 0, 1, 8, 9, 4, 5, 12, 13);
-    const Lanes b = __builtin_shufflevector(pair[0], pair[1], 2, 3, 10, 11, 6, 7, 14, 15);
-    first = __builtin_shufflevector(a, __builtin_shufflevector(pair[2], zero, 0, 1, 8, 9, 0, 1, 8, 9), 0, 1, 2, 3, 8, 9,
-                                    10, 11);
-    second = __builtin_shufflevector(b, __builtin_shufflevector(pair[2], zero, 2, 3, 8, 9, 2, 3, 8, 9), 0, 1, 2, 3, 8,
-                                     9, 10, 11);
-    third = __builtin_shufflevector(a, __builtin_shufflevector(pair[2], zero, 4, 5, 8, 9, 4, 5, 8, 9), 4, 5, 6, 7, 8, 9,
-                                    10, 11);
-    fourth = __builtin_shufflevector(b, __builtin_shufflevector(pair[2], zero, 6, 7, 8, 9, 6, 7, 8, 9), 4, 5, 6, 7, 8,
-                                     9, 10, 11);
+  const auto spread = [](const Lanes* pair, Lanes& first, Lanes& second, Lanes& third, Lanes& fourth) {
+    constexpr LaneMask counts{-1, -1, -1, -1, -1, -1, 0, 0};
+    const Lanes a = __builtin_shufflevector(pair[0], pair[1], 0, 1, 4, 5, 8, 9, 12, 13);
+    const Lanes b = __builtin_shufflevector(pair[0], pair[1], 2, 3, 6, 7, 10, 11, 14, 15);
+    first = counts ? __builtin_shufflevector(a, pair[2], 0, 1, 4, 5, 8, 9, 8, 9) : Lanes{};
+    second = counts ? __builtin_shufflevector(b, pair[2], 0, 1, 4, 5, 10, 11, 10, 11) : Lanes{};
+    third = counts ? __builtin_shufflevector(a, pair[2], 2, 3, 6, 7, 12, 13, 12, 13) : Lanes{};
+    fourth = counts ? __builtin_shufflevector(b, pair[2], 2, 3, 6, 7, 14, 15, 14, 15) : Lanes{};
   };
   spread(low, row[0], row[2], row[4], row[6]);
   spread(high, row[1], row[3], row[5], row[7]);
@@ -63,8 +59,8 @@ struct Stencil {
   std::array<Lanes, 3> weight_x, slope_x;  ///< w_i(x), d w_i / d f
   alignas(64) std::array<std::array<double, lane_count>, 3> weight_y, slope_y;
   alignas(64) std::array<double, lane_count> offset_x;
-  alignas(32) std::array<int, lane_count> node;  ///< first of the nine
-  int stride;                                    ///< of the grid's rows
+  alignas(64) std::array<std::ptrdiff_t, lane_count> node;  ///< first of the nine
+  std::ptrdiff_t stride;  ///< of the grid's rows
   Lanes f_x, f_y;
 
   Stencil(const Grid& grid, Lanes x, Lanes y) : stride(grid.stride) {
@@ -72,7 +68,7 @@ struct Stencil {
     const LaneInts i = inside(column, grid.columns), j = inside(row, grid.rows);
     f_x = column - __builtin_convertvector(i, Lanes);
     f_y = row - __builtin_convertvector(j, Lanes);
-    const LaneInts first = j * grid.stride + i;
+    const auto first = __builtin_convertvector(j * grid.stride + i, LaneMask);
     __builtin_memcpy(node.data(), &first, sizeof first);
     store(offset_x.data(), f_x);
     weigh(f_x, weight_x, slope_x);
@@ -157,7 +153,7 @@ struct Stencil {
       const double f = offset_x[p];
       const Quad row_masses = each[p] * (a + f * (b + f * c));
       for (int j = 0; j < 3; ++j)
-        add_row(masses + node[p] + j * stride, weight_y[static_cast<std::size_t>(j)][p] * row_masses);
+        add_row((masses + j * stride) + node[p], weight_y[static_cast<std::size_t>(j)][p] * row_masses);
     }
   }
 
@@ -174,7 +170,7 @@ struct Stencil {
   }
   template <class T>
   T* row(T* nodal, std::size_t p, int j) const {
-    return nodal + 2 * (node[p] + j * stride);
+    return (nodal + 2 * j * stride) + 2 * node[p];
   }
 };
 
