@@ -10,7 +10,8 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double beyond_the_domain = 1e3;  // stands for an infinite chi2: a root finder wants finite numbers
 
-/// One side of one unknown's profile, walked outwards: each minimum starts from the last one.
+/// One side of one unknown's profile, walked outwards: each minimum starts from the last one within the limit. One from
+/// beyond may lie where the model is flat (an exponential whose rate has run off to -infinity) and lead nowhere.
 class Walk {
  public:
   Walk(const LeastSquares& problem, const Minimum& best, int unknown, double rise, const Eigen::VectorXd& tangent)
@@ -21,9 +22,10 @@ class Walk {
     Minimum here = follow(last_.values, value);
     if (!std::isfinite(here.chi2)) here = follow(best_.values, value);
     if (!std::isfinite(here.chi2)) return beyond_the_domain;
-    last_ = here;
     if (here.chi2 < lowest_.chi2) lowest_ = here;
-    return std::min(std::sqrt(std::max(here.chi2 - best_.chi2, 0.0) / rise_) - 1.0, beyond_the_domain);
+    const double excess = std::sqrt(std::max(here.chi2 - best_.chi2, 0.0) / rise_) - 1.0;
+    if (excess < 0.0) last_ = here;
+    return std::min(excess, beyond_the_domain);
   }
 
   /// The lowest minimum met, wherever the unknown was held.

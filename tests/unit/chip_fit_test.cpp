@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <numbers>
@@ -62,6 +63,31 @@ TEST(LeastSquaresFit, OfALineIsTheTextbookOne) {
   EXPECT_EQ(result.freedom, 3);
   EXPECT_NEAR(result.correlation(0, 1), -sx / std::sqrt(n * sxx), 1e-9);
   EXPECT_FALSE(result.p_value.has_value()) << "nothing to test against";
+}
+
+/// Three forces leave a fit of A exp(k h) one degree of freedom, and its limits lie far out: where chi2, at the best k
+/// for that A (a fine scan), is 1 + t^2 times the least.
+TEST(LeastSquaresFit, OfAnExponentialFindsItsLimitsFarOut) {
+  const double t = boost::math::quantile(boost::math::students_t(1), 0.975);
+  for (const auto& forces : {std::array{0.963, 1.248, 1.416}, std::array{0.975, 1.589, 2.999}}) {
+    const Measurements three({cut_at(0.2, forces[0]), cut_at(0.3, forces[1]), cut_at(0.4, forces[2])});
+    const auto result = fit("intercept_exponential", three);
+    ASSERT_EQ(result.freedom, 1);
+    const auto least = [&](double toughness) {
+      double lowest = 1e300;
+      for (double rate = -50; rate < 50; rate += 1e-4) {
+        double sum = 0;
+        for (std::size_t i = 0; i < 3; ++i)
+          sum += std::pow(toughness * std::exp(rate * (0.2 + 0.1 * static_cast<double>(i))) - forces[i], 2);
+        lowest = std::min(lowest, sum);
+      }
+      return lowest;
+    };
+    const auto& toughness = result.parameters.at(0);
+    EXPECT_LT(toughness.lower, 0.2 * toughness.value);
+    EXPECT_NEAR(least(toughness.lower), (1 + t * t) * result.chi2, 1e-3 * t * t * result.chi2);
+    EXPECT_NEAR(least(toughness.upper), (1 + t * t) * result.chi2, 1e-3 * t * t * result.chi2);
+  }
 }
 
 TEST(LeastSquaresFit, KnownErrorsAreNotRescaled) {
