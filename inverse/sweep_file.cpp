@@ -1,16 +1,12 @@
 #include "inverse/sweep_file.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
-#include <system_error>
 
 #include "forward/record/hdf5.hpp"
 #include "forward/scene/scene.hpp"
-#include "models/base/atomic_file.hpp"
-#include "models/base/error.hpp"
 
 namespace kerf::inverse {
 namespace {
@@ -54,9 +50,8 @@ void copy_history(hid_t runs, const fs::path& cut_file, const std::string& name)
   check(H5Ocopy(cut, "history", runs, name.c_str(), H5P_DEFAULT, H5P_DEFAULT), "history");
 }
 
-void write_h5(const fs::path& file, const Sweep& sweep, const std::vector<SweepColumn>& columns,
+void write_h5(hid_t h5, const Sweep& sweep, const std::vector<SweepColumn>& columns,
               const std::vector<fs::path>& cut_files) {
-  const Handle h5(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose, "new file");
   write_attribute(h5, "title", forward::read_scene(sweep.scene).title);
   write_attribute(h5, "code_version", KERF_VERSION);
   write_attribute(h5, "scene", sweep.scene.canonical());
@@ -67,29 +62,13 @@ void write_h5(const fs::path& file, const Sweep& sweep, const std::vector<SweepC
   const Handle runs(H5Gcreate2(h5, "runs", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose, "group");
   for (std::size_t run = 0; run < cut_files.size(); ++run)
     copy_history(runs, cut_files[run], fmt::format("{:03}", run + 1));
-  check(H5Fflush(h5, H5F_SCOPE_GLOBAL), "flush");
 }
 
 }  // namespace
 
 void write_sweep(const fs::path& h5, const Sweep& sweep, const std::vector<SweepColumn>& columns,
                  const std::vector<fs::path>& cut_files) {
-  const fs::path partial = fs::path(h5) += fmt::format(".partial-{}", ::getpid());
-  std::error_code ignored;
-  try {
-    const QuietErrors quiet;
-    if (h5.has_parent_path()) fs::create_directories(h5.parent_path());
-    write_h5(partial, sweep, columns, cut_files);
-    // The same bytes once more, this time flushed to the disk before they take their name.
-    write_atomically(h5, read_file(partial));
-    fs::remove(partial);
-  } catch (const Failure& failure) {
-    fs::remove(partial, ignored);
-    throw InputError(fmt::format("{}: cannot be written (HDF5: {})", h5.string(), failure.what));
-  } catch (const fs::filesystem_error& failure) {
-    fs::remove(partial, ignored);
-    throw InputError(fmt::format("{}: cannot be written: {}", h5.string(), failure.code().message()));
-  }
+  write_file(h5, [&](hid_t file) { write_h5(file, sweep, columns, cut_files); });
 }
 
 }  // namespace kerf::inverse

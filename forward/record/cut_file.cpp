@@ -1,21 +1,16 @@
 #include "forward/record/cut_file.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <mutex>
 #include <string>
-#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "forward/record/hdf5.hpp"
 #include "forward/record/result_json.hpp"
 #include "models/base/atomic_file.hpp"
-#include "models/base/error.hpp"
 
 namespace kerf::forward {
 namespace {
@@ -169,8 +164,7 @@ void write_group(hid_t parent, const char* name, const std::vector<Field>& field
   }
 }
 
-void write_h5(const fs::path& file, const Document& document, const Scene& scene, const CutResult& result) {
-  const Handle h5(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose, "new file");
+void write_h5(hid_t h5, const Document& document, const Scene& scene, const CutResult& result) {
   write_attribute(h5, "title", scene.title);
   write_attribute(h5, "code_version", KERF_VERSION);
   write_attribute(h5, "scene", document.canonical());
@@ -181,15 +175,6 @@ void write_h5(const fs::path& file, const Document& document, const Scene& scene
   write_group(h5, "particles", particle_fields(result.snapshot));
   write_group(h5, "faces", face_fields(result.snapshot));
   write_group(h5, "tool", tool_fields(scene, result.snapshot));
-  check(H5Fflush(h5, H5F_SCOPE_GLOBAL), "flush");
-}
-
-void fsync_file(const fs::path& file) {
-  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0) throw Failure{"fsync"};
-  const int status = ::fsync(descriptor);
-  ::close(descriptor);
-  if (status != 0) throw Failure{"fsync"};
 }
 
 /// Points as ParaView's Polyvertex: the first field is the position, the others are attributes.
@@ -257,26 +242,8 @@ fs::path xdmf_beside(const fs::path& h5) {
 }
 
 void write_cut(const fs::path& h5, const Document& document, const CutResult& result) {
-  // The HDF5 library is not built for threads; simulations that run side by side take turns here.
-  static std::mutex one_at_a_time;
-  const std::lock_guard lock(one_at_a_time);
-
   const Scene scene = read_scene(document);
-  const fs::path partial = fs::path(h5) += fmt::format(".partial-{}", ::getpid());
-  std::error_code ignored;
-  try {
-    const QuietErrors quiet;
-    if (h5.has_parent_path()) fs::create_directories(h5.parent_path());
-    write_h5(partial, document, scene, result);
-    fsync_file(partial);
-    fs::rename(partial, h5);
-  } catch (const Failure& failure) {
-    fs::remove(partial, ignored);
-    throw InputError(fmt::format("{}: cannot be written (HDF5: {})", h5.string(), failure.what));
-  } catch (const fs::filesystem_error& failure) {
-    fs::remove(partial, ignored);
-    throw InputError(fmt::format("{}: cannot be written: {}", h5.string(), failure.code().message()));
-  }
+  write_file(h5, [&](hid_t file) { write_h5(file, document, scene, result); });
   write_atomically(xdmf_beside(h5), xdmf(h5.filename().string(), result.snapshot));
 }
 

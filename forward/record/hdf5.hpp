@@ -1,12 +1,21 @@
 #pragma once
 
+#include <fcntl.h>
+#include <fmt/format.h>
 #include <hdf5.h>
+#include <unistd.h>
 
+#include <filesystem>
+#include <functional>
+#include <mutex>
 #include <string>
+#include <system_error>
+
+#include "models/base/error.hpp"
 
 namespace kerf::hdf5 {
 
-/// Anything HDF5 refuses; the writer of a file turns it into an InputError that names the file.
+/// Anything HDF5 refuses; `write_file` turns it into an InputError that names the file.
 struct Failure {
   std::string what;
 };
@@ -62,6 +71,38 @@ inline void write_attribute(hid_t owner, const char* name, const std::string& te
   const Handle attribute(H5Acreate2(owner, name, type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose, "attribute");
   const char* content = text.c_str();
   check(H5Awrite(attribute, type, &content), "attribute");
+}
+
+/// Writes a new file beside `file` and lets it take that name once it is on the disk: a reader sees the old or the new
+/// content, never a part. Creates missing parent folders. Throws InputError when the place cannot be written or HDF5
+/// refuses something.
+inline void write_file(const std::filesystem::path& file, const std::function<void(hid_t)>& write) {
+  // The library is not built for threads; simulations that run side by side take turns here.
+  static std::mutex one_at_a_time;
+  const std::lock_guard lock(one_at_a_time);
+
+  const std::filesystem::path partial = std::filesystem::path(file) += fmt::format(".partial-{}", ::getpid());
+  std::error_code ignored;
+  try {
+    const QuietErrors quiet;
+    if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());
+    {
+      const Handle h5(H5Fcreate(partial.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose, "new file");
+      write(h5);
+      check(H5Fflush(h5, H5F_SCOPE_GLOBAL), "flush");
+    }
+    const int descriptor = ::open(partial.c_str(), O_RDONLY | O_CLOEXEC);
+    const bool on_disk = descriptor >= 0 && ::fsync(descriptor) == 0;
+    if (descriptor >= 0) ::close(descriptor);
+    if (!on_disk) throw Failure{"fsync"};
+    std::filesystem::rename(partial, file);
+  } catch (const Failure& failure) {
+    std::filesystem::remove(partial, ignored);
+    throw InputError(fmt::format("{}: cannot be written (HDF5: {})", file.string(), failure.what));
+  } catch (const std::filesystem::filesystem_error& failure) {
+    std::filesystem::remove(partial, ignored);
+    throw InputError(fmt::format("{}: cannot be written: {}", file.string(), failure.code().message()));
+  }
 }
 
 }  // namespace kerf::hdf5
