@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "forward/effects/bridging.hpp"
+#include "forward/effects/face_friction.hpp"
 #include "forward/effects/grips.hpp"
 #include "forward/effects/thermostat.hpp"
 #include "forward/effects/xpic.hpp"
@@ -46,6 +47,9 @@ std::vector<Stage> plan(const Scene& scene) {
       [&scene](State& state) { pull_faces(state, scene.cohesive); });
   add("closing", "the upper face cannot enter the lower one",
       [stiffness](State& state) { close_faces(state, stiffness); });
+  if (scene.face_friction)
+    add("rubbing", "closed crack faces without bonds rub on each other, up to the slip limit",
+        [mu = scene.face_friction->coefficient, stiffness](State& state) { rub_faces(state, mu, stiffness); });
   for (const Contact& contact : contacts(scene))
     add(contact.name,
         contact.does + (contact.friction > 0.0 ? " and rubs, up to the slip limit and the yield cap" : ""),

@@ -163,33 +163,44 @@ void break_bond(State& state, const Cohesive& cohesive, std::size_t k) {
                                                          taken(*cohesive.mode_II, shear, crack.largest_shear[k]));
 }
 
+std::optional<Overlap> overlap(const State& state, std::size_t k) {
+  const Crack& crack = state.crack;
+  const Face &upper = crack.face[above], &lower = crack.face[below];
+  if (crack.size() < 2 || upper.inverse_mass[k] == 0.0) return {};
+  const double x = upper.x[k];
+  if (x < lower.x.front() || x > lower.x.back()) return {};
+  // The lower face hardly moves: start where the reference spacing says and step to the segment that holds x.
+  const std::size_t last = crack.size() - 2;
+  auto j = std::min(last, static_cast<std::size_t>((x - lower.x.front()) / crack.spacing));
+  while (j > 0 && lower.x[j] > x) --j;
+  while (j < last && lower.x[j + 1] < x) ++j;
+  if (lower.inverse_mass[j] == 0.0 || lower.inverse_mass[j + 1] == 0.0) return {};
+  const double run = lower.x[j + 1] - lower.x[j];
+  const double t = (x - lower.x[j]) / run, slope = (lower.y[j + 1] - lower.y[j]) / run;
+  const double depth = lower.y[j] + t * run * slope - upper.y[k];
+  if (depth <= 0.0 || depth > 2.0 * state.grid.cell_y) return {};
+  return Overlap{j, t, slope, depth};
+}
+
+void push_apart(Crack& crack, std::size_t k, const Overlap& touch, double x, double y) {
+  Face &upper = crack.face[above], &lower = crack.face[below];
+  const auto [j, t, slope, depth] = touch;
+  upper.force_x[k] += x;
+  upper.force_y[k] += y;
+  lower.force_x[j] -= (1.0 - t) * x;
+  lower.force_y[j] -= (1.0 - t) * y;
+  lower.force_x[j + 1] -= t * x;
+  lower.force_y[j + 1] -= t * y;
+}
+
 void close_faces(State& state, double stiffness) {
   Crack& crack = state.crack;
-  Face &upper = crack.face[above], &lower = crack.face[below];
-  if (crack.size() < 2) return;
-  const std::size_t last = crack.size() - 2;
-  const double length = crack.spacing;
   for (std::size_t k = 0; k < crack.size(); ++k) {
-    if (upper.inverse_mass[k] == 0.0) continue;
-    const double x = upper.x[k];
-    if (x < lower.x.front() || x > lower.x.back()) continue;
-    // The lower face hardly moves: start where the reference spacing says and step to the segment that holds x.
-    auto j = std::min(last, static_cast<std::size_t>((x - lower.x.front()) / length));
-    while (j > 0 && lower.x[j] > x) --j;
-    while (j < last && lower.x[j + 1] < x) ++j;
-    if (lower.inverse_mass[j] == 0.0 || lower.inverse_mass[j + 1] == 0.0) continue;
-    const double run = lower.x[j + 1] - lower.x[j];
-    const double t = (x - lower.x[j]) / run, slope = (lower.y[j + 1] - lower.y[j]) / run;
-    const double gap = upper.y[k] - (lower.y[j] + t * run * slope);
-    if (gap >= 0.0 || gap < -2.0 * state.grid.cell_y) continue;
-    const double push = -stiffness * gap * length;
-    upper.force_x[k] -= slope * push;
-    upper.force_y[k] += push;
-    lower.force_x[j] += (1.0 - t) * slope * push;
-    lower.force_y[j] -= (1.0 - t) * push;
-    lower.force_x[j + 1] += t * slope * push;
-    lower.force_y[j + 1] -= t * push;
-    state.contact_energy -= 0.5 * push * gap;
+    const std::optional<Overlap> touch = overlap(state, k);
+    if (!touch) continue;
+    const double push = stiffness * touch->depth * crack.spacing;
+    push_apart(crack, k, *touch, -touch->slope * push, push);
+    state.contact_energy += 0.5 * push * touch->depth;
   }
 }
 

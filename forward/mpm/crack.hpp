@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "forward/mpm/state.hpp"
 
 namespace kerf::forward {
@@ -19,6 +21,17 @@ void pull_faces(State& state, const Cohesive& cohesive);
 
 /// Takes a pair's tractions away; what its laws had used up is added to the broken energy.
 void break_bond(State& state, const Cohesive& cohesive, std::size_t k);
+
+/// An upper marker inside the lower face: at the share t of the lower segment j, of this slope, `depth` below it (mm,
+/// along y).
+struct Overlap {
+  std::size_t segment;
+  double t, slope, depth;
+};
+std::optional<Overlap> overlap(const State& state, std::size_t k);
+
+/// A force (N/mm) on upper marker k, and its opposite on the segment that it overlaps.
+void push_apart(Crack& crack, std::size_t k, const Overlap& touch, double x, double y);
 
 /// The upper face cannot enter the lower one, wherever it has slid to: a penalty (`stiffness`, MPa/mm) on the gap
 /// between an upper marker and the segment of the lower face below it. Frictionless.

@@ -257,6 +257,7 @@ State lay_out(const Scene& scene) {
   state.follows_top = needs_top(touching);
   for (const Contact& contact : touching)
     if (contact.friction > 0.0) surface(state, contact.surface).slip.emplace_back();
+  if (scene.face_friction) state.crack.face[above].slip.emplace_back();  // behind those of the tool
   if (!scene.grips) wrap_end(state, scene);
   for (int i = 0; i < cells_along(scene.window.ahead); ++i) feed_column(state, scene, i * grid.cell_x);
   sort_into_batches(state, scene, sides(state.particles));

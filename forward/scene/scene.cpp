@@ -110,6 +110,11 @@ std::vector<Block> declare() {
        .variant = "",
        .meaning = "what the tool does to the bonds that still hold where its edge arrives; absent: it ignores them",
        .parameters = {text("tool", "whether the edge cuts them or leaves them alone", {"cuts", "ignores"})}},
+      {.path = "face_friction",
+       .variant = "",
+       .meaning =
+           "Coulomb friction between crack faces without bonds that close on each other; absent: they slide freely",
+       .parameters = {number("coefficient", "1", 0.0, 2.0, "coefficient of friction mu of the faces")}},
       {.path = "edge_contact",
        .variant = "",
        .meaning =
@@ -275,6 +280,7 @@ Scene read_scene(const Document& document) {
               .sole = {},
               .nose_bar = {},
               .bridging = {},
+              .face_friction = {},
               .grips = {},
               .pic_damping = {},
               .xpic_damping = {},
@@ -332,6 +338,7 @@ Scene read_scene(const Document& document) {
     scene.nose_bar = {
         .lead = bar->number("lead"), .radius = bar->number("radius"), .compression = bar->number("compression")};
   if (const Values* bridging = block("bridging")) scene.bridging = {.cut = bridging->text("tool") == "cuts"};
+  if (const Values* faces = block("face_friction")) scene.face_friction = {.coefficient = faces->number("coefficient")};
   if (const Values* pic = block("pic_damping")) scene.pic_damping = {.rate = pic->number("rate")};
   if (const Values* xpic = block("xpic_damping"))
     scene.xpic_damping = {.rate = xpic->number("rate"), .order = whole_number(*xpic, "order")};

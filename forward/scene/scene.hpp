@@ -79,6 +79,11 @@ struct Bridging {
   bool cut;
 };
 
+/// Coulomb friction between crack faces that close on each other again.
+struct FaceFriction {
+  double coefficient;
+};
+
 /// The clearance side pressed into the freshly cut face, its height tied to that face (a worn edge).
 struct EdgeContact {
   double press_in;     ///< delta: how far the edge sits below the face that comes towards it
@@ -140,6 +145,7 @@ struct Scene {
   std::optional<Sole> sole;
   std::optional<NoseBar> nose_bar;
   std::optional<Bridging> bridging;
+  std::optional<FaceFriction> face_friction;
   std::optional<Grips> grips;
   std::optional<PicDamping> pic_damping;
   std::optional<XpicDamping> xpic_damping;

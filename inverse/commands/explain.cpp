@@ -76,6 +76,7 @@ void print_absent(const Scene& scene) {
     fmt::print("  contact of the edge with the cut face: the scene has no [edge_contact], the tool is sharp\n");
   if (!scene.pic_damping) fmt::print("  numerical damping: the scene has no [pic_damping]\n");
   if (!scene.bridging) fmt::print("  bonds cut by the tool's edge: the scene has no [bridging]\n");
+  if (!scene.face_friction) fmt::print("  friction between closed crack faces: the scene has no [face_friction]\n");
   if (!scene.chip_breaker) fmt::print("  a chip breaker: the scene has no [chip_breaker]\n");
   if (!scene.sole) fmt::print("  the sole of a plane: the scene has no [sole]\n");
   if (!scene.nose_bar) fmt::print("  a nose bar: the scene has no [nose_bar]\n");

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "forward/effects/bridging.hpp"
+#include "forward/effects/face_friction.hpp"
 #include "models/laws/sawtooth.hpp"
 #include "tests/shipped_scene.hpp"
 
@@ -226,6 +227,120 @@ TEST(Bond, PullsTheFacesTogether) {
   EXPECT_NEAR(upper.force_x[0], law.mode_II->traction(0.05) * spacing, 1e-15);
   EXPECT_EQ(lower.force_x[0], -upper.force_x[0]);
   EXPECT_EQ(lower.force_y[0], -upper.force_y[0]);
+}
+
+constexpr double stiffness = 1000;  // MPa/mm
+
+/// Faces without bonds, the upper one `depth` inside the lower one, both at a slope.
+State pressed(double depth, double slope, int count = 40) {
+  State state = pairs(count);
+  state.grid.cell_y = 1;
+  Crack& crack = state.crack;
+  crack.face[above].slip.emplace_back(crack.size(), 0.0);
+  for (const std::size_t end : {std::size_t{0}, crack.size() - 1})  // not to slide off the lower face
+    crack.face[above].inverse_mass[end] = 0.0;
+  for (std::size_t k = 0; k < crack.size(); ++k) {
+    crack.intact[k] = 0;
+    for (Face& face : crack.face) face.y[k] = slope * face.x[k];
+    crack.face[above].y[k] -= depth;
+  }
+  return state;
+}
+
+/// Slides the upper face along the lower one by `way` (measured along it) in equal steps; the work done on the way
+/// against both faces' forces, trapezoids of each step.
+double slide(State& state, double coefficient, double slope, double way, int steps) {
+  Face &upper = state.crack.face[above], &lower = state.crack.face[below];
+  const double step_x = way / steps / std::hypot(1, slope), step_y = slope * step_x;
+  double work = 0;
+  const auto power = [&] {
+    double sum = 0;
+    for (std::size_t k = 0; k < upper.size(); ++k) sum -= upper.force_x[k] * step_x + upper.force_y[k] * step_y;
+    return sum;
+  };
+  for (int i = 0; i < steps; ++i) {
+    work += 0.5 * power();
+    for (std::size_t k = 0; k < upper.size(); ++k) {
+      upper.x[k] += step_x;
+      upper.y[k] += step_y;
+      upper.velocity_x[k] = step_x / state.step;
+      upper.velocity_y[k] = step_y / state.step;
+      for (Face* face : {&upper, &lower}) face->force_x[k] = face->force_y[k] = 0;
+    }
+    state.contact_energy = 0;
+    close_faces(state, stiffness);
+    rub_faces(state, coefficient, stiffness);
+    work += 0.5 * power();
+  }
+  return work;
+}
+
+double total(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double value : values) sum += value;
+  return sum;
+}
+
+/// Force on the upper face across and along the lower one, N/mm.
+struct Force {
+  double normal, along;
+};
+Force of_upper(const State& state, double slope) {
+  const Face& upper = state.crack.face[above];
+  const double x = total(upper.force_x), y = total(upper.force_y), length = std::hypot(1, slope);
+  return {(y - slope * x) / length, (x + slope * y) / length};
+}
+
+/// Sticks as a spring up to the slip limit, then slides at mu times the pressure; back again it does the same.
+TEST(FaceFriction, SticksUpToTheSlipLimitAndThenSlides) {
+  constexpr double mu = 0.4, depth = 1e-4;
+  for (const double slope : {0.0, 0.3}) {
+    State state = pressed(depth, slope);
+    const double limit = mu * depth * std::hypot(1, slope);  // mm: where k slip is mu p
+    slide(state, mu, slope, 0.5 * limit, 10);
+    Force now = of_upper(state, slope);
+    EXPECT_NEAR(now.along, -0.5 * mu * now.normal, 1e-12 * now.normal);
+    EXPECT_EQ(state.work.friction, 0.0);
+    slide(state, mu, slope, 4.5 * limit, 90);
+    now = of_upper(state, slope);
+    EXPECT_NEAR(now.along, -mu * now.normal, 1e-12 * now.normal);
+    EXPECT_GT(now.normal, 0);
+    slide(state, mu, slope, -5 * limit, 100);
+    now = of_upper(state, slope);
+    EXPECT_NEAR(now.along, mu * now.normal, 1e-12 * now.normal);
+    // What acts on one face acts back on the other.
+    EXPECT_NEAR(total(state.crack.face[above].force_x), -total(state.crack.face[below].force_x), 1e-14);
+    EXPECT_NEAR(total(state.crack.face[above].force_y), -total(state.crack.face[below].force_y), 1e-14);
+  }
+}
+
+/// The work is mu p times the slip, the springs' stretch not counted, and it is what the sliding cost: stretch first,
+/// slip after.
+TEST(FaceFriction, BooksWhatItDissipates) {
+  constexpr double mu = 0.4, depth = 1e-4;
+  for (const double slope : {0.0, 0.3}) {
+    State state = pressed(depth, slope);
+    const double limit = mu * depth * std::hypot(1, slope), way = 20 * limit;
+    const double cost = slide(state, mu, slope, way, 2000);
+    const double pressed_by = of_upper(state, slope).normal;
+    EXPECT_NEAR(state.work.friction, mu * pressed_by * (way - limit), 1e-9 * cost);
+    const double in_springs = 0.5 * mu * pressed_by * limit;
+    // The kinks of all springs fall into one step: less than mu p times a step.
+    EXPECT_NEAR(cost, state.work.friction + in_springs, mu * pressed_by * way / 2000);
+  }
+}
+
+TEST(FaceFriction, NeedsFacesThatTouchAndHaveNoBonds) {
+  State state = pressed(1e-4, 0);
+  state.crack.intact.assign(state.crack.size(), 1);
+  slide(state, 0.4, 0, 1e-3, 100);
+  EXPECT_EQ(total(state.crack.face[above].force_x), 0.0);
+  EXPECT_GT(total(state.crack.face[above].force_y), 0.0);
+  State open = pressed(-1e-4, 0);
+  slide(open, 0.4, 0, 1e-3, 100);
+  EXPECT_EQ(total(open.crack.face[above].force_x), 0.0);
+  EXPECT_EQ(open.work.friction, 0.0);
+  EXPECT_EQ(open.contact_energy, 0.0);
 }
 
 TEST(CutBonds, ASharpEdgeTakesThoseBehindIt) {
