@@ -25,7 +25,8 @@ Outline rake_face(const Scene& scene, double tip_radius) {
 }
 
 /// The clearance plane: behind the tip the lower face cannot rise into the tool, however strongly bonds that still hold
-/// pull it. A blunt tip is round there too, up to 60 deg ahead of its lowest point.
+/// pull it. A blunt tip is round there too, up to 60 deg ahead of its lowest point; a sharp one may have a lead-in
+/// plane ahead, up from the tip.
 Outline underside(const Scene& scene, double tip_radius) {
   const double c = scene.tool.clearance;
   Outline outline;
@@ -38,8 +39,13 @@ Outline underside(const Scene& scene, double tip_radius) {
     outline.add_plane(centre_x - tip_radius * std::sin(c), tip_radius * (1.0 - std::cos(c)), -std::sin(c), -std::cos(c),
                       ToolFace::bottom);
   } else {
+    if (scene.tool.lead_in) {
+      outline.add_plane(0.0, 0.0, std::sin(*scene.tool.lead_in), -std::cos(*scene.tool.lead_in), ToolFace::lead_in);
+      outline.add_round(0.0, 0.0, 0.0, ToolFace::bottom);
+    } else {
+      outline.end_at(0.0);
+    }
     outline.add_plane(0.0, 0.0, -std::sin(c), -std::cos(c), ToolFace::bottom);
-    outline.end_at(0.0);
   }
   return outline;
 }

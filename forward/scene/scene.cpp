@@ -65,7 +65,11 @@ std::vector<Block> declare() {
             number("blunting", "1", 0.5, 100,
                    "tool travel over which the tip grows round after the notch, in depths of cut; begun blunt, a tool "
                    "never starts to cut")
-                .or_else("5")}},
+                .or_else("5"),
+            number("lead_in", "deg", 5, 45,
+                   "angle to the crack plane of a face ahead of a sharp tip that holds down the lower side where it "
+                   "rises; absent: there is none")
+                .if_given()}},
       {.path = "grips",
        .variant = "",
        .meaning = "a cracked specimen pulled apart at its end instead of a cut; cut.notch is its crack, cut.travel the "
@@ -209,8 +213,15 @@ Tool read_tool(const Values& tool, double cell) {
               .clearance = 12.0 * degree,
               .tip_radius = tool.number("tip_radius"),
               .separation = tool.number("separation_angle"),
-              .blunting = tool.number("blunting")};
+              .blunting = tool.number("blunting"),
+              .lead_in = {}};
   if (tool.has("clearance")) result.clearance = tool.number("clearance");
+  if (tool.has("lead_in")) {
+    result.lead_in = tool.number("lead_in");
+    if (result.tip_radius > 0.0)
+      throw InputError(
+          fmt::format("{}: a lead_in belongs to a sharp tip; tip_radius has rounded this one", tool.where("lead_in")));
+  }
   if (tool.has("bevel")) {
     if (tool.has("clearance"))
       throw InputError(fmt::format("{}: [tool] has bevel and clearance; one follows from the other, so give one",
@@ -325,6 +336,9 @@ Scene read_scene(const Document& document) {
     scene.edge_contact = {.press_in = edge->number("press_in") * cut.depth,
                           .edge_radius = edge->number("edge_radius") * cut.depth,
                           .friction = edge->number("coefficient")};
+  if (scene.edge_contact && scene.tool.lead_in)
+    throw InputError(fmt::format("{}: [edge_contact] wears the lower side of the tip round; lead_in needs a sharp one",
+                                 contents.at("edge_contact").where("press_in")));
   if (scene.edge_contact && scene.tool.tip_radius > 0.0)
     throw InputError(
         fmt::format("{}: [edge_contact] wears the lower side of a tip that tip_radius has rounded already; "
@@ -351,6 +365,7 @@ std::vector<ToolFace> faces_of(const Scene& scene) {
   if (scene.grips) return {};
   std::vector<ToolFace> faces{ToolFace::rake, ToolFace::bottom};
   if (scene.tool.tip_radius > 0.0) faces.push_back(ToolFace::tip);
+  if (scene.tool.lead_in) faces.push_back(ToolFace::lead_in);
   if (scene.chip_breaker) faces.push_back(ToolFace::chip_breaker);
   if (scene.sole) faces.push_back(ToolFace::sole);
   if (scene.nose_bar) faces.push_back(ToolFace::nose_bar);

@@ -42,6 +42,7 @@ struct Tool {
   double tip_radius = 0;    ///< of a tip rounded on both sides; 0 is sharp
   double separation = 2.0;  ///< of a round tip's normal from straight down, ahead positive: above it, work flows up
   double blunting = 5;      ///< travel, in depths, over which the radius grows to its value
+  std::optional<double> lead_in;  ///< angle of a face from the tip up ahead, against a lower face that rises there
 
   /// x of the lowest point of a tip of this radius, behind the apex that it would have if it were sharp.
   double lowest_point(double radius) const;

@@ -5,12 +5,13 @@
 namespace kerf::forward {
 
 /// The named faces that a tool is built from; forces are told apart by them.
-enum class ToolFace { rake, tip, bottom, chip_breaker, sole, nose_bar };
+enum class ToolFace { rake, tip, bottom, lead_in, chip_breaker, sole, nose_bar };
 
-constexpr std::size_t tool_face_count = 6;
+constexpr std::size_t tool_face_count = 7;
 
 constexpr const char* name(ToolFace face) {
-  constexpr const char* names[tool_face_count] = {"rake", "tip", "bottom", "chip_breaker", "sole", "nose_bar"};
+  constexpr const char* names[tool_face_count] = {"rake",         "tip",  "bottom",  "lead_in",
+                                                  "chip_breaker", "sole", "nose_bar"};
   return names[static_cast<std::size_t>(face)];
 }
 

@@ -4,7 +4,7 @@ from . import cut as drawing
 from .page import Page, chip, finite, html, integer, number, prose, symbol, with_error
 
 
-FACES = {"rake": "rake face", "bottom": "clearance side", "tip": "round tip"}
+FACES = {"rake": "rake face", "bottom": "clearance side", "tip": "round tip", "lead_in": "lead-in"}
 
 
 def page_of_cut(cut):

@@ -120,6 +120,15 @@ Body round_underside() {
           r};
 }
 
+Body underside_with_lead_in() {
+  Scene scene = kerf::testing::shipped("verification_45");
+  const double clearance = scene.tool.clearance, lead_in = 20 * pi / 180;
+  scene.tool.lead_in = lead_in;
+  const Point tip{0, 0}, start{-far * std::cos(clearance), far * std::sin(clearance)};
+  const Point end{far * std::cos(lead_in), far * std::sin(lead_in)};
+  return {"underside with a lead-in", outline_of(scene, "underside"), Drawn(start).line(tip).line(end), tip, 0};
+}
+
 Body worn_edge() {
   Scene scene = kerf::testing::shipped("verification_45");
   const double r = 0.5, press_in = 0.02, clearance = scene.tool.clearance;
@@ -166,7 +175,9 @@ Body nose_bar() {
 }
 
 std::vector<Body> bodies() {
-  return {round_rake(), tip_with_dead_zone(), round_underside(), worn_edge(), breaker(), sole(), nose_bar()};
+  return {
+      round_rake(), tip_with_dead_zone(), round_underside(), underside_with_lead_in(), worn_edge(), breaker(), sole(),
+      nose_bar()};
 }
 
 /// Points around the corner, out to 1 mm from its surface and in to where the body is not hollowed out yet.
@@ -237,6 +248,9 @@ TEST(Outline, NamesTheFaceThatIsTouched) {
   const Outline under = round_underside().outline;
   EXPECT_EQ(under.touch(-2, -0.1).face, ToolFace::bottom);
   EXPECT_EQ(under.touch(-0.6, -0.1).face, ToolFace::tip);
+  const Outline lead_in = underside_with_lead_in().outline;
+  EXPECT_EQ(lead_in.touch(-0.5, 0.2).face, ToolFace::bottom);
+  EXPECT_EQ(lead_in.touch(0.5, 0.2).face, ToolFace::lead_in);
 }
 
 /// Ahead of a sharp tip there is no tool: a clearance plane that went on would press down the material before it.

@@ -165,6 +165,17 @@ TEST(Cut, AWornEdgePressesOnTheBaseAndASharpOneDoesNot) {
   EXPECT_NE(worn.refusals.front().find("sharp tool"), std::string::npos);
 }
 
+/// The lower face rises ahead of the tip by less than a lead-in does, and without friction nothing pushes it up.
+TEST(Cut, ALeadInBeforeASharpTipCarriesNothing) {
+  Scene scene =
+      shipped("verification_45", {{"resolution.cells_through_chip", 4}, {"cut.travel", 6}, {"cut.notch", 0.5}});
+  const CutResult plain = run(scene);
+  scene.tool.lead_in = 20 * std::numbers::pi / 180;
+  const CutResult led = run(scene);
+  EXPECT_NEAR(led.F_c.value, plain.F_c.value, 0.002 * plain.F_c.value);
+  EXPECT_LT(led.face(ToolFace::lead_in).normal.value, 0.002 * plain.F_c.value);
+}
+
 TEST(Acceptance, RefusesAGridTooCoarseForTheCohesiveLaw) {
   const CutResult result =
       run(shipped("verification_45", {{"cut.depth", 1.5}, {"resolution.cells_through_chip", 4}, {"cut.travel", 4}}));
