@@ -11,6 +11,7 @@
 #include "forward/plan.hpp"
 #include "forward/record/acceptance.hpp"
 #include "forward/record/recorder.hpp"
+#include "forward/record/stage_clock.hpp"
 #include "forward/record/summary.hpp"
 
 namespace kerf::forward {
@@ -26,13 +27,14 @@ CutResult run(const Scene& scene, const std::function<bool(const Progress&)>& pr
 
   State state = lay_out(scene);
   const std::vector<Stage> stages = plan(scene);
+  StageClock clock(stages);
   Recorder recorder;
   CutResult result;
   const double length = scene.cut.travel * scene.cut.depth;
   const double crossing = scene.grips ? length / specimen_readings : scene.cell_length();
   double next_crossing = crossing;
   while (state.tool.x < length) {
-    for (const Stage& stage : stages) stage.apply(state);
+    clock.step(state);
     state.time += state.step;
     recorder.add_step(state);
     ++result.cost.steps;
@@ -40,9 +42,11 @@ CutResult run(const Scene& scene, const std::function<bool(const Progress&)>& pr
     if (!state.breakdown.empty()) break;
     if (state.tool.x < next_crossing) continue;
 
-    recorder.add_crossing(state, scene);
     next_crossing += crossing;
-    if (!scene.grips) shift_window(state, scene);
+    clock.between_steps([&] {
+      recorder.add_crossing(state, scene);
+      if (!scene.grips) shift_window(state, scene);
+    });
     const ForceSample& last = recorder.history().back();
     if (progress && !progress({state.tool.x, length, last.F_c, elapsed()})) {
       result.refusals.emplace_back("interrupted");
@@ -53,6 +57,7 @@ CutResult run(const Scene& scene, const std::function<bool(const Progress&)>& pr
   if (!state.breakdown.empty())
     result.refusals.push_back(fmt::format("broke down after {:.3g} mm: {}", state.tool.x, state.breakdown));
   result.cost.wall_seconds = elapsed();
+  result.cost.stages = clock.times();
   summarise(result, recorder, state, scene);
   judge(result, scene);
   return result;

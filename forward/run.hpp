@@ -45,9 +45,18 @@ struct ForceSample {
 enum class Branch { touching, bending };
 const char* name(Branch branch);
 
+/// CPU seconds that a stage of the step took over the whole run, from samples.
+struct StageTime {
+  std::string stage;
+  double seconds;
+};
+/// The name under which records and shifts of the window stand among the stages.
+constexpr const char* between_steps_name = "between steps";
+
 struct Cost {
   double wall_seconds = 0;
   std::int64_t steps = 0, particle_steps = 0;
+  std::vector<StageTime> stages;
 };
 
 /// A picture of the last instant: one entry per particle / per crack-face marker.

@@ -43,10 +43,14 @@ Json energies(const Ledger& ledger) {
 }
 
 Json cost_of(const Cost& cost) {
+  Json stages = Json::array();
+  for (const StageTime& time : cost.stages)
+    stages.push_back({{"stage", time.stage}, {"cpu_s", finite_or_null(time.seconds)}});
   return {{"wall_s", finite_or_null(cost.wall_seconds)},
           {"steps", cost.steps},
           {"particle_steps", cost.particle_steps},
-          {"particle_steps_per_s", finite_or_null(static_cast<double>(cost.particle_steps) / cost.wall_seconds)}};
+          {"particle_steps_per_s", finite_or_null(static_cast<double>(cost.particle_steps) / cost.wall_seconds)},
+          {"stages", stages}};
 }
 
 /// Resistance against crack extension, and the same read at the notch, split by mode.

@@ -46,6 +46,8 @@ TEST(ResultJson, LedgerResidueIsWhatTheOthersLeave) {
 TEST(ResultJson, DerivesSpeedAndCurlRadius) {
   const auto json = result_json(sample_cut());
   EXPECT_DOUBLE_EQ(json["cost"]["particle_steps_per_s"], 2e6);
+  EXPECT_EQ(json["cost"]["stages"][1]["stage"], "stress");
+  EXPECT_DOUBLE_EQ(json["cost"]["stages"][1]["cpu_s"], 3);
   EXPECT_DOUBLE_EQ(json["curl_radius"]["value"], 4);  // 1 / 0.25 per mm
   EXPECT_DOUBLE_EQ(json["curl_radius"]["se"], 0.8);   // 4 * 0.05 / 0.25
   EXPECT_EQ(json["curl_radius"]["unit"], "mm");

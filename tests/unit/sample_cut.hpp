@@ -24,7 +24,7 @@ inline CutResult sample_cut() {
   r.steady_from = 0.9;
   r.ledger = {
       .tool_work = 20, .fracture = 5, .plastic = 13, .elastic = 0.5, .kinetic = 0.25, .friction = 0, .damping = 1};
-  r.cost = {.wall_seconds = 4, .steps = 1000, .particle_steps = 8000000};
+  r.cost = {.wall_seconds = 4, .steps = 1000, .particle_steps = 8000000, .stages = {{"project", 1}, {"stress", 3}}};
   for (int crossing = 1; crossing <= 40; ++crossing) {
     const double travel = 0.0625 * crossing, force = 7.6 * (1 - std::exp(-4 * travel));
     ForceSample sample{};
