@@ -241,6 +241,21 @@ fs::path xdmf_beside(const fs::path& h5) {
   return fs::path(h5).replace_extension(".xdmf");
 }
 
+KeptCut read_cut(const fs::path& h5) {
+  const std::lock_guard lock(one_at_a_time);
+  if (!fs::exists(h5)) throw InputError(fmt::format("{}: there is no such file", h5.string()));
+  try {
+    const QuietErrors quiet;
+    const Handle file(H5Fopen(h5.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "not an HDF5 file");
+    return {.scene = Document::parse(read_attribute(file, "scene"), h5.string()),
+            .result = nlohmann::ordered_json::parse(read_attribute(file, "result"))};
+  } catch (const Failure& failure) {
+    throw InputError(fmt::format("{}: is not the file of a cut (HDF5: {})", h5.string(), failure.what));
+  } catch (const nlohmann::json::exception& failure) {
+    throw InputError(fmt::format("{}: is not the file of a cut: {}", h5.string(), failure.what()));
+  }
+}
+
 void write_cut(const fs::path& h5, const Document& document, const CutResult& result) {
   const Scene scene = read_scene(document);
   write_file(h5, [&](hid_t file) { write_h5(file, document, scene, result); });

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "forward/run.hpp"
 #include "models/base/document.hpp"
@@ -19,6 +20,14 @@ namespace kerf::forward {
 /// The file appears whole or not at all (temporary name, fsync, rename); missing parent folders are created. May be
 /// called from several threads. Throws InputError when the place cannot be written or `scene` is not a scene.
 void write_cut(const std::filesystem::path& h5, const Document& scene, const CutResult& result);
+
+/// The scene and the result (see forward/record/result_json.hpp) that a cut's file remembers.
+struct KeptCut {
+  Document scene;
+  nlohmann::ordered_json result;
+};
+/// Throws InputError when the file is not there or not a cut's.
+KeptCut read_cut(const std::filesystem::path& h5);
 
 /// Where the XDMF description of `h5` stands: the same name, extension .xdmf.
 std::filesystem::path xdmf_beside(const std::filesystem::path& h5);

@@ -73,12 +73,23 @@ inline void write_attribute(hid_t owner, const char* name, const std::string& te
   check(H5Awrite(attribute, type, &content), "attribute");
 }
 
+inline std::string read_attribute(hid_t owner, const char* name) {
+  const Handle attribute(H5Aopen(owner, name, H5P_DEFAULT), H5Aclose, name);
+  const Handle type(string_type(), H5Tclose, "string type");
+  char* content = nullptr;
+  check(H5Aread(attribute, type, &content), name);
+  const std::string text = content;
+  H5free_memory(content);
+  return text;
+}
+
+/// The library is not built for threads; simulations that run side by side take turns.
+inline std::mutex one_at_a_time;
+
 /// Writes a new file beside `file` and lets it take that name once it is on the disk: a reader sees the old or the new
 /// content, never a part. Creates missing parent folders. Throws InputError when the place cannot be written or HDF5
 /// refuses something.
 inline void write_file(const std::filesystem::path& file, const std::function<void(hid_t)>& write) {
-  // The library is not built for threads; simulations that run side by side take turns here.
-  static std::mutex one_at_a_time;
   const std::lock_guard lock(one_at_a_time);
 
   const std::filesystem::path partial = std::filesystem::path(file) += fmt::format(".partial-{}", ::getpid());

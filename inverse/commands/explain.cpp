@@ -1,14 +1,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "forward/mpm/window.hpp"
 #include "forward/plan.hpp"
+#include "forward/record/cut_file.hpp"
 #include "inverse/commands/commands.hpp"
 #include "inverse/commands/expected_cost.hpp"
 
@@ -16,15 +19,107 @@ namespace kerf::commands {
 namespace {
 
 using forward::Scene;
-using forward::Stage;
 using forward::State;
+using Json = nlohmann::ordered_json;
 
 constexpr double degrees = 57.29577951308232;
 
+/// A line of the step: a stage, its sentence and its share of the time.
+struct Line {
+  std::string stage, does;
+  double share;
+};
+
+/// What the scene does not hold, or what no scene can.
+struct Absent {
+  std::string block, meaning;
+};
+constexpr const char* never =
+    "heat, rate dependence, a deforming tool, a crack that leaves its plane, out-of-plane strain";
+
+struct Explanation {
+  Scene scene;
+  State state;  ///< laid out
+  std::vector<Line> step;
+  bool from_run;  ///< the shares are those of a finished run, not of the first steps here and now
+  std::vector<Absent> absent;
+  ExpectedCost cost;
+  double seconds_per_particle_step;
+  Json run;  ///< what the finished run has cost
+};
+
+/// Every optional block that the document leaves out, in the words of its declaration.
+std::vector<Absent> left_out(const Document& document) {
+  const Contents contents = document.read(forward::scene_blocks());
+  std::vector<Absent> absent;
+  for (const Block& block : forward::scene_blocks())
+    if (!block.required && !contents.has(block.path)) absent.push_back({block.path, block.meaning});
+  return absent;
+}
+
+std::vector<Line> step_in_words(const std::vector<forward::Stage>& stages,
+                                const std::vector<forward::StageTime>& times) {
+  double total = 0;
+  for (const forward::StageTime& time : times) total += time.seconds;
+  std::vector<Line> lines;
+  for (const forward::StageTime& time : times) {
+    const auto stage = std::find_if(stages.begin(), stages.end(), [&](const auto& s) { return s.name == time.stage; });
+    if (stage != stages.end())
+      lines.push_back({stage->name, stage->does, time.seconds / total});
+    else if (time.seconds > 0.0)
+      lines.push_back({time.stage, "records, and the window follows the tool", time.seconds / total});
+  }
+  return lines;
+}
+
+/// Of a scene (.toml) or of a finished cut (.h5), which knows its own shares.
+Explanation explanation_of(const std::string& file) {
+  std::optional<forward::KeptCut> run;
+  if (std::filesystem::path(file).extension() == ".h5") run = forward::read_cut(file);
+  const Document document = run ? run->scene : Document::load(file);
+  Explanation all{.scene = forward::read_scene(document),
+                  .state = {},
+                  .step = {},
+                  .from_run = false,
+                  .absent = left_out(document),
+                  .cost = {},
+                  .seconds_per_particle_step = 0,
+                  .run = {}};
+  all.state = forward::lay_out(all.scene);
+  all.cost = expected_cost(all.scene, all.state);
+  const std::vector<forward::Stage> stages = forward::plan(all.scene);
+  std::vector<forward::StageTime> times;
+  all.from_run = run && run->result.at("cost").contains("stages");
+  if (all.from_run) {
+    all.run = run->result.at("cost");
+    for (const Json& time : all.run.at("stages"))
+      times.push_back({time.at("stage").get<std::string>(), time.at("cpu_s").get<double>()});
+  } else {
+    constexpr int steps = 100;
+    times = time_stages(all.state, stages, steps);
+    double seconds = 0;
+    for (const forward::StageTime& time : times) seconds += time.seconds;
+    all.seconds_per_particle_step = seconds / steps / static_cast<double>(all.state.particles.begin[2]);
+  }
+  all.step = step_in_words(stages, times);
+  return all;
+}
+
+std::size_t bytes_per_node(const State& state) {
+  const forward::VelocityField& f = state.grid.side[0];
+  const std::size_t numbers = f.mass.size() + f.momentum.size() + f.velocity.size() + f.next_velocity.size() +
+                              f.change.size() + f.force.size() + f.filtered.size();
+  return 8 * (numbers / state.grid.nodes());
+}
+
 void print_cut(const Scene& scene) {
   fmt::print("{}\n\n", scene.title);
-  fmt::print("A layer of {:g} mm is cut at {:g} m/s by a rigid tool with a rake angle of {:g} deg. The work is an\n",
-             scene.cut.depth, scene.cut.speed / 1e3, scene.tool.rake * degrees);
+  if (scene.grips)
+    fmt::print("A specimen with arms of {:g} and {:g} mm is pulled apart at {:g} m/s. The work is an\n",
+               scene.cut.depth, scene.grips->lower_arm, scene.cut.speed / 1e3);
+  else
+    fmt::print("A layer of {:g} mm is cut at {:g} m/s by a rigid tool with a rake angle of {:g} deg. The work is an\n",
+               scene.cut.depth, scene.cut.speed / 1e3, scene.tool.rake * degrees);
   fmt::print(
       "elastic-plastic solid in plane strain that separates along the plane y = 0; the cohesive law passes on\n");
   fmt::print("at most {:g} MPa (mode I) and {:g} MPa (mode II), and takes {:g} and {:g} J/m^2 to break.\n\n",
@@ -37,7 +132,7 @@ void print_discretisation(const Scene& scene, const State& state) {
   const int side = scene.resolution.particles_per_cell_side;
   fmt::print("Discretisation\n");
   fmt::print("  cells of {:g} mm, {} through the chip, {} x {} particles each: {} particles\n", scene.cell(),
-             scene.resolution.cells_through_chip, side, side, state.particles.begin[2]);
+             scene.resolution.cells_through_chip, scene.particles_along_cell(), side, state.particles.begin[2]);
   fmt::print("  window around the tip, in depths: {:g} ahead, {:g} behind, {:g} below, {:g} above; it travels along\n",
              window.ahead, window.behind, window.below, window.above);
   fmt::print("  time step {:.3g} us ({:g} of an elastic wave's transit of a cell)\n", 1e6 * state.step,
@@ -49,12 +144,12 @@ void print_discretisation(const Scene& scene, const State& state) {
              scene.cohesive.mode_I->critical_opening() / scene.cell(), zone / scene.cell());
 }
 
-void print_stages(const std::vector<Stage>& stages, const std::vector<double>& seconds) {
-  double total = 0;
-  for (const double stage : seconds) total += stage;
-  fmt::print("One time step, in order (share of the time, measured now)\n");
-  for (std::size_t i = 0; i < stages.size(); ++i)
-    fmt::print("  {:>2}. {:<11}{:>4.0f} %   {}\n", i + 1, stages[i].name, 100 * seconds[i] / total, stages[i].does);
+void print_step(const Explanation& all) {
+  fmt::print("One time step, in order (share of the time, {})\n",
+             all.from_run ? "measured in this run" : "measured now on its first steps");
+  int number = 0;
+  for (const Line& line : all.step)
+    fmt::print("  {:>2}. {:<13}{:>5.1f} %   {}\n", ++number, line.stage, 100 * line.share, line.does);
   fmt::print("\n");
 }
 
@@ -66,50 +161,70 @@ void print_memory(State& state) {
     list += fields[i].name;
     list += i + 1 == fields.size() ? "\n" : i % 4 == 3 ? ",\n  " : ", ";
   }
-  fmt::print("{}The crack is followed by {} pairs of markers.\n\n", list, state.crack.size());
+  fmt::print("{}Each of the {} grid nodes carries {} bytes for either side of the crack plane.\n", list,
+             state.grid.nodes(), bytes_per_node(state));
+  fmt::print("The crack is followed by {} pairs of markers.\n\n", state.crack.size());
 }
 
-void print_absent(const Scene& scene) {
-  fmt::print("Not simulated\n");
-  if (!scene.friction) fmt::print("  friction on the tool: the scene has no [friction]\n");
-  if (!scene.edge_contact)
-    fmt::print("  contact of the edge with the cut face: the scene has no [edge_contact], the tool is sharp\n");
-  if (!scene.pic_damping) fmt::print("  numerical damping: the scene has no [pic_damping]\n");
-  if (!scene.bridging) fmt::print("  bonds cut by the tool's edge: the scene has no [bridging]\n");
-  if (!scene.face_friction) fmt::print("  friction between closed crack faces: the scene has no [face_friction]\n");
-  if (!scene.chip_breaker) fmt::print("  a chip breaker: the scene has no [chip_breaker]\n");
-  if (!scene.sole) fmt::print("  the sole of a plane: the scene has no [sole]\n");
-  if (!scene.nose_bar) fmt::print("  a nose bar: the scene has no [nose_bar]\n");
-  fmt::print("  heat, rate dependence, a deforming tool, a crack that leaves its plane: no such effects here\n\n");
+void print_absent(const std::vector<Absent>& absent) {
+  fmt::print("Not simulated, since the scene has no such block\n");
+  for (const Absent& one : absent) fmt::print("  {:<16}{}\n", "[" + one.block + "]", one.meaning);
+  fmt::print("Never simulated: {}\n\n", never);
 }
 
-void print_cost(const Scene& scene, const State& state, double seconds_per_step) {
-  const ExpectedCost cost = expected_cost(scene, state);
+void print_cost(const Explanation& all) {
+  if (all.from_run) {
+    fmt::print("Cost of this run: {} steps, {:.3g} particle-steps, {:.1f} s\n", all.run.at("steps").get<long>(),
+               all.run.at("particle_steps").get<double>(), all.run.at("wall_s").get<double>());
+    return;
+  }
+  const Scene& scene = all.scene;
+  const ExpectedCost& cost = all.cost;
   fmt::print("Expected cost\n");
   fmt::print("  the cut stops between {:g} and {:g} depths of travel, once the standard error of F_c is below {:g} %\n",
              std::min(scene.steady_state.not_before, scene.cut.travel), scene.cut.travel,
              100 * scene.steady_state.tolerance);
   fmt::print(
       "  {:.3g} to {:.3g} steps, {:.2g} to {:.2g} particle-steps, {:.2g} to {:.2g} s at the speed measured now\n",
-      cost.least_steps, cost.most_steps, cost.least(), cost.most(), cost.least_steps * seconds_per_step,
-      cost.most_steps * seconds_per_step);
+      cost.least_steps, cost.most_steps, cost.least, cost.most, cost.least * all.seconds_per_particle_step,
+      cost.most * all.seconds_per_particle_step);
 }
 
-void explain(const std::string& file) {
-  const Scene scene = forward::read_scene(Document::load(file));
-  State state = forward::lay_out(scene);
-  const std::vector<Stage> stages = forward::plan(scene);
-  constexpr int steps = 100;
-  const std::vector<double> seconds = time_stages(state, stages, steps);
-  double total = 0;
-  for (const double stage : seconds) total += stage;
+Json as_json(Explanation& all) {
+  Json step = Json::array(), fields = Json::array(), absent = Json::array();
+  for (const Line& line : all.step) step.push_back({{"stage", line.stage}, {"does", line.does}, {"share", line.share}});
+  for (const auto& field : all.state.particles.fields()) fields.push_back(field.name);
+  for (const Absent& one : all.absent) absent.push_back({{"block", one.block}, {"meaning", one.meaning}});
+  Json json{
+      {"title", all.scene.title},
+      {"step", step},
+      {"shares", all.from_run ? "of the run" : "of the first steps, measured now"},
+      {"particle_fields", fields},
+      {"bytes_per_particle", 8 * fields.size()},
+      {"bytes_per_node_and_side", bytes_per_node(all.state)},
+      {"particles", all.state.particles.begin[2]},
+      {"marker_pairs", all.state.crack.size()},
+      {"not_simulated", absent},
+      {"never_simulated", never},
+      {"expected",
+       {{"steps", {all.cost.least_steps, all.cost.most_steps}}, {"particle_steps", {all.cost.least, all.cost.most}}}}};
+  if (all.from_run)
+    json["run"] = all.run;
+  else
+    json["expected"]["s"] = {all.cost.least * all.seconds_per_particle_step,
+                             all.cost.most * all.seconds_per_particle_step};
+  return json;
+}
 
-  print_cut(scene);
-  print_discretisation(scene, state);
-  print_stages(stages, seconds);
-  print_memory(state);
-  print_absent(scene);
-  print_cost(scene, state, total / steps);
+void explain(const std::string& file, bool json) {
+  Explanation all = explanation_of(file);
+  if (json) return fmt::print("{}\n", as_json(all).dump(2));
+  print_cut(all.scene);
+  print_discretisation(all.scene, all.state);
+  print_step(all);
+  print_memory(all.state);
+  print_absent(all.absent);
+  print_cost(all);
 }
 
 }  // namespace
@@ -117,9 +232,12 @@ void explain(const std::string& file) {
 void add_explain(CLI::App& app, int& exit_code) {
   auto* command = app.add_subcommand("explain", "Say in plain English what a scene makes the solver do, and its cost");
   const auto file = std::make_shared<std::string>();
-  command->add_option("scene", *file, "scene file (TOML)")->required();
-  command->callback([file, &exit_code] {
-    explain(*file);
+  const auto json = std::make_shared<bool>(false);
+  command->add_option("file", *file, "a scene (.toml), or a finished cut (.h5) with the times of its own stages")
+      ->required();
+  command->add_flag("--json", *json, "print the same as JSON");
+  command->callback([file, json, &exit_code] {
+    explain(*file, *json);
     exit_code = 0;
   });
 }

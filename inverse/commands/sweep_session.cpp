@@ -41,7 +41,7 @@ std::vector<double> largest_costs(const Sweep& sweep) {
   std::vector<double> costs;
   for (const inverse::SweepRun& run : sweep.runs) {
     try {
-      costs.push_back(expected_cost(forward::read_scene(run.scene)).most());
+      costs.push_back(expected_cost(forward::read_scene(run.scene)).most);
     } catch (const InputError&) {
       costs.push_back(0);
     }
@@ -289,11 +289,11 @@ void print_sweep_cost(const Sweep& sweep, int jobs) {
       const forward::Scene scene = forward::read_scene(sweep.runs[run].scene);
       const ExpectedCost cost = expected_cost(scene);
       fmt::print("{:>5}  {:>8.0f} particles  {:>8.2g} to {:<8.2g} particle-steps  {}\n", run + 1, cost.particles,
-                 cost.least(), cost.most(), sweep.runs[run].label);
-      least += cost.least();
-      most += cost.most();
-      if (cost.most() > longest) {
-        longest = cost.most();
+                 cost.least, cost.most, sweep.runs[run].label);
+      least += cost.least;
+      most += cost.most;
+      if (cost.most > longest) {
+        longest = cost.most;
         dearest = scene;
       }
     } catch (const InputError& error) {

@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <set>
 
+#include "forward/scene/scene.hpp"
 #include "tests/unit/run_kerf.hpp"
 
 namespace kerf {
@@ -71,13 +73,52 @@ TEST_F(CutCommands, ExplainSaysWhatIsAndWhatIsNotSimulated) {
   const ProcessOutput frictionless = kerf("explain '" + scene_.string() + "'");
   ASSERT_EQ(frictionless.exit_code, 0) << frictionless.err;
   EXPECT_THAT(frictionless.out, HasSubstr("4 through the chip, 2 x 2 particles each"));
-  EXPECT_THAT(frictionless.out, HasSubstr("the scene has no [friction]"));
+  EXPECT_THAT(frictionless.out, HasSubstr("[friction]"));
   EXPECT_THAT(frictionless.out, HasSubstr("Expected cost"));
 
   std::ofstream(scene_, std::ios::app) << "\n[friction]\ncoefficient = 0.2\n";
   const ProcessOutput rubbing = kerf("explain '" + scene_.string() + "'");
   ASSERT_EQ(rubbing.exit_code, 0) << rubbing.err;
-  EXPECT_THAT(rubbing.out, testing::Not(HasSubstr("the scene has no [friction]")));
+  EXPECT_THAT(rubbing.out, testing::Not(HasSubstr("[friction]")));
+}
+
+TEST_F(CutCommands, ExplainNamesEveryBlockThatIsNotThere) {
+  const ProcessOutput run = kerf("explain '" + scene_.string() + "' --json");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto json = nlohmann::json::parse(run.out);
+  std::set<std::string> absent, expected;
+  for (const auto& one : json["not_simulated"]) absent.insert(one["block"].get<std::string>());
+  for (const Block& block : forward::scene_blocks())
+    if (!block.required && !block.path.starts_with("material")) expected.insert(block.path);
+  for (const char* there : {"tool", "pic_damping"}) expected.erase(there);
+  EXPECT_EQ(absent, expected);
+  EXPECT_EQ(json["bytes_per_particle"], 80);
+  double shares = 0;
+  for (const auto& stage : json["step"]) shares += stage["share"].get<double>();
+  EXPECT_NEAR(shares, 1.0, 1e-9);
+}
+
+TEST_F(CutCommands, ExplainShowsWhereTheTimeOfARunWent) {
+  const fs::path h5 = folder_ / "cut.h5";
+  ASSERT_EQ(kerf("simulate '" + scene_.string() + "' -o '" + h5.string() + "'").exit_code, 4);
+  const ProcessOutput run = kerf("explain '" + h5.string() + "' --json");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto json = nlohmann::json::parse(run.out);
+  EXPECT_EQ(json["shares"], "of the run");
+  EXPECT_EQ(json["step"].back()["stage"], "between steps");
+  EXPECT_EQ(json["step"].size(), json["run"]["stages"].size());
+  double shares = 0;
+  for (const auto& stage : json["step"]) {
+    EXPECT_GT(stage["share"].get<double>(), 0.0) << stage["stage"];
+    shares += stage["share"].get<double>();
+  }
+  EXPECT_NEAR(shares, 1.0, 1e-9);
+
+  std::ofstream(h5) << "no cut";
+  const ProcessOutput broken = kerf("explain '" + h5.string() + "'");
+  EXPECT_EQ(broken.exit_code, 3);
+  EXPECT_THAT(broken.err, HasSubstr("cut.h5: is not the file of a cut"));
+  EXPECT_TRUE(broken.out.empty());
 }
 
 TEST_F(CutCommands, TheShippedScenesAreReadable) {
