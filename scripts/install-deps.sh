@@ -6,7 +6,7 @@ packages=(
   g++ cmake ninja-build pkg-config
   libboost-dev libeigen3-dev libceres-dev libnlopt-dev libnlopt-cxx-dev libhdf5-dev libssl-dev
   libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libfmt-dev libudunits2-dev
-  libgtest-dev libgmock-dev libbenchmark-dev
+  libgtest-dev libgmock-dev libbenchmark-dev valgrind
   python3-matplotlib python3-h5py python3-jinja2
 )
 
