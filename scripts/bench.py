@@ -2,7 +2,7 @@
 """Runs the benchmarks (tests/bench) several times over and forms their ratios, each from one pass, so that what is
 compared was measured side by side. Rates are of CPU time; only two simulations at once are compared by the clock.
 
-Usage: scripts/bench.py KERF_BENCH [--json FILE] [--repeats N]"""
+Usage: scripts/bench.py KERF_BENCH [--json FILE] [--repeats N] [--readme]"""
 
 import argparse
 import datetime
@@ -21,16 +21,16 @@ bytes_per_particle_step = 8 * (8 + 5 + 5 + 4)
 
 # name, format, meaning
 table = [
-    ("j2.particle_steps_per_s", ".3g", "bare kernel, J2, all yield, 16 k particles, one core"),
-    ("j2.below_yield_particle_steps_per_s", ".3g", "... none yields"),
+    ("j2.particle_steps_per_s", ".3g", "bare kernel, all yield, 16 k particles, one core"),
+    ("j2.below_yield_per_s", ".3g", "... none yields"),
     ("elastic.particle_steps_per_s", ".3g", "... yield stress out of reach"),
     ("hill.particle_steps_per_s", ".3g", "bare kernel, Hill, all yield"),
-    ("hill.below_yield_particle_steps_per_s", ".3g", "... none yields"),
-    ("hill.overhead", ".2f", "time of a Hill step over a J2 step, all yield, minus 1"),
-    ("scalar.particle_steps_per_s", ".3g", "the same J2 step written plainly, not vectorised"),
+    ("hill.below_yield_per_s", ".3g", "... none yields"),
+    ("hill.overhead", ".2f", "time over that of a J2 step, all yield, minus 1"),
+    ("scalar.particle_steps_per_s", ".3g", "the same step written plainly, not vectorised"),
     ("j2.ratio_to_scalar", ".2f", "J2 kernel over that"),
-    ("j2.flops_per_particle_step", ".0f", "+ - * / sqrt that the plain code does, counted"),
-    ("j2.fraction_of_peak", ".3f", "of the multiply-adds one core can do in registers"),
+    ("j2.flops_per_particle_step", ".0f", "+ - * / sqrt in the plain code, counted"),
+    ("j2.fraction_of_peak", ".3f", "of what multiply-adds in registers reach"),
     ("j2.fraction_of_l2", ".3f", "of the bytes one core can read from L2"),
     ("peak.flops", ".3g", "measured, f64"),
     ("peak.l2_bytes_per_s", ".3g", "measured"),
@@ -73,14 +73,14 @@ def quantities(benches):
     sizes = [b for name, b in benches.items() if name.startswith("kernel/scaling/")]
     return {
         "j2.particle_steps_per_s": j2,
-        "j2.below_yield_particle_steps_per_s": rate(f"kernel/j2_below_yield/{standard}"),
+        "j2.below_yield_per_s": rate(f"kernel/j2_below_yield/{standard}"),
         "j2.ratio_to_scalar": j2 / rate("scalar"),
         "j2.flops_per_particle_step": flops,
         "j2.fraction_of_peak": flops * j2 / peak,
         "j2.fraction_of_l2": bytes_per_particle_step * j2 / l2,
         "elastic.particle_steps_per_s": rate(f"kernel/elastic/{standard}"),
         "hill.particle_steps_per_s": hill,
-        "hill.below_yield_particle_steps_per_s": hill_below,
+        "hill.below_yield_per_s": hill_below,
         "hill.overhead": j2 / hill - 1,
         "scalar.particle_steps_per_s": rate("scalar"),
         "peak.flops": peak,
@@ -115,6 +115,7 @@ def main():
     parser.add_argument("program")
     parser.add_argument("--json", metavar="FILE", help="write what was measured here")
     parser.add_argument("--repeats", type=int, default=5)
+    parser.add_argument("--readme", action="store_true", help="put the table in README.md")
     options = parser.parse_args()
 
     passes = []
@@ -125,15 +126,19 @@ def main():
     print("\r\033[K", end="", file=sys.stderr)
 
     result = {"machine": machine(context), "repeats": options.repeats}
-    print(f"{result['machine']['cpu']}, {result['machine']['cores']} cores, {result['machine']['compiler']}, "
-          f"{result['machine']['flags']}\n")
-    print(f"{'':<40}{'median':>10}{'min':>10}{'max':>10}")
+    lines = ["{cpu}, {cores} cores, {compiler} {flags}".format(**result["machine"]),
+             f"{'':<38}{'median':>9}{'min':>9}{'max':>9}"]
     for name, form, meaning in table:
         values = [one[name] for one in passes]
         spread = {"min": min(values), "median": statistics.median(values), "max": max(values), "values": values}
         group, key = name.split(".")
         result.setdefault(group, {})[key] = spread
-        print(f"{name:<40}" + "".join(f"{spread[k]:>10{form}}" for k in ("median", "min", "max")) + f"   {meaning}")
+        lines.append(f"{name:<38}" + "".join(f"{spread[k]:>9{form}}" for k in ("median", "min", "max")) + f"  {meaning}")
+    print("\n".join(lines))
+    if options.readme:
+        readme = pathlib.Path("README.md")
+        before, rest = readme.read_text().split("<!-- bench -->\n```\n")
+        readme.write_text(before + "<!-- bench -->\n```\n" + "\n".join(lines) + "\n" + rest[rest.index("```"):])
     if options.json:
         partial = pathlib.Path(options.json + ".partial")
         partial.write_text(json.dumps(result, indent=2) + "\n")

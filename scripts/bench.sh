@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Measures what a step costs on this machine and prints one table; two to three minutes.
-# Usage: scripts/bench.sh [--json FILE] [--repeats N]
+# Usage: scripts/bench.sh [--json FILE] [--repeats N] [--readme]     --readme puts the table in README.md
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
