@@ -107,8 +107,8 @@ Explanation explanation_of(const std::string& file) {
 
 std::size_t bytes_per_node(const State& state) {
   const forward::VelocityField& f = state.grid.side[0];
-  const std::size_t numbers = f.mass.size() + f.momentum.size() + f.velocity.size() + f.next_velocity.size() +
-                              f.change.size() + f.force.size() + f.filtered.size();
+  const std::size_t numbers =
+      f.mass.size() + f.momentum.size() + f.velocity.size() + f.change.size() + +f.force.size() + f.filtered.size();
   return 8 * (numbers / state.grid.nodes());
 }
 

@@ -22,11 +22,16 @@ const forward::Scene& verification_cut() {
 void stretch(Particles& p, const laws::Material& material) {
   constexpr int pulls = 60;
   constexpr double pull = 1e-3;
-  const std::vector<double> none(p.size(), 0.0), up(p.size(), pull);
-  laws::MaterialPoints points{p.stress_xx.data(),      p.stress_yy.data(), p.stress_zz.data(), p.stress_xy.data(),
-                              p.plastic_strain.data(), p.axis_x.data(),    p.axis_y.data()};
-  const laws::StrainIncrement strain{none.data(), none.data(), none.data(), up.data()};
-  for (int i = 0; i < pulls; ++i) std::visit([&](const auto& law) { law.update(p.size(), strain, points); }, material);
+  const laws::StrainIncrement strain{{}, {}, {}, all_lanes(pull)};
+  std::visit(
+      [&]<class Law>(const Law& law) {
+        for (std::size_t first = 0; first < p.size(); first += lane_count) {
+          laws::MaterialPoints points = p.material_points<Law::has_axes>(first);
+          for (int i = 0; i < pulls; ++i) law.update(strain, points);
+          p.set<Law::has_axes>(first, points);
+        }
+      },
+      material);
 }
 
 }  // namespace
