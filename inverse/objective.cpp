@@ -23,6 +23,7 @@ RunRequest Objective::request(const Eigen::VectorXd& point, std::size_t cut) con
 
 std::vector<RunRecord> Objective::simulate(const std::vector<Probe>& probes) {
   std::vector<RunRequest> requests;
+  requests.reserve(probes.size());
   for (const Probe& probe : probes) requests.push_back(request(probe.point, probe.cut));
   if (database_.runs_with(requests) > max_runs_) throw BudgetSpent{};
   return database_.run(requests);

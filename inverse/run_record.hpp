@@ -10,6 +10,7 @@ namespace kerf::inverse {
 
 /// What is remembered of one simulated cut: everything but its history and its picture. A run that failed is a value
 /// too (`accepted` false, `refusals` in words).
+// NOLINTNEXTLINE(bugprone-exception-escape): that of the json, which its library declares not to throw
 struct RunRecord {
   Estimate F_c, F_t;        ///< N/mm
   Estimate chip_ratio;      ///< chip thickness / depth of cut

@@ -88,6 +88,7 @@ std::vector<double> over_history(const std::vector<ForceSample>& history, Value 
 
 std::vector<Field> history_fields(const std::vector<ForceSample>& history, const std::vector<ToolFace>& faces) {
   std::vector<Field> fields;
+  fields.reserve(std::size(history_columns) + 3 * faces.size());
   for (const auto& column : history_columns)
     fields.push_back({column.name, column.unit, 1,
                       over_history(history, [&](const ForceSample& sample) { return sample.*column.value; })});

@@ -140,6 +140,7 @@ void summarise(CutResult& result, const Recorder& recorder, const State& state, 
   for (const ToolFace face : faces_of(scene)) {
     const auto of_face = [&](double FaceForce::*member) {
       std::vector<double> values;
+      values.reserve(history.size());
       for (const ForceSample& sample : history) values.push_back(sample.face[static_cast<std::size_t>(face)].*member);
       return batch_mean(std::span(values).subspan(from));
     };
