@@ -40,8 +40,8 @@ inline std::array<Lanes, 8> rows_of(const std::array<Lanes, 6>& column) {
   }
   const auto spread = [](const Lanes* pair, Lanes& first, Lanes& second, Lanes& third, Lanes& fourth) {
     constexpr LaneMask counts{-1, -1, -1, -1, -1, -1, 0, 0};
-    const Lanes a = __builtin_shufflevector(pair[0], pair[1], 0, 1, 4, 5, 8, 9, 12, 13);
-    const Lanes b = __builtin_shufflevector(pair[0], pair[1], 2, 3, 6, 7, 10, 11, 14, 15);
+    Lanes a = __builtin_shufflevector(pair[0], pair[1], 0, 1, 4, 5, 8, 9, 12, 13);
+    Lanes b = __builtin_shufflevector(pair[0], pair[1], 2, 3, 6, 7, 10, 11, 14, 15);
     first = counts ? __builtin_shufflevector(a, pair[2], 0, 1, 4, 5, 8, 9, 8, 9) : Lanes{};
     second = counts ? __builtin_shufflevector(b, pair[2], 0, 1, 4, 5, 10, 11, 10, 11) : Lanes{};
     third = counts ? __builtin_shufflevector(a, pair[2], 2, 3, 6, 7, 12, 13, 12, 13) : Lanes{};
@@ -60,7 +60,7 @@ struct Stencil {
   alignas(64) std::array<std::array<double, lane_count>, 3> weight_y, slope_y;
   alignas(64) std::array<double, lane_count> offset_x;
   alignas(64) std::array<std::ptrdiff_t, lane_count> node;  ///< first of the nine
-  std::ptrdiff_t stride;  ///< of the grid's rows
+  std::ptrdiff_t stride;                                    ///< of the grid's rows
   Lanes f_x, f_y;
 
   Stencil(const Grid& grid, Lanes x, Lanes y) : stride(grid.stride) {

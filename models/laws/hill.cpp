@@ -252,7 +252,7 @@ bool Hill::update(const StrainIncrement& l, MaterialPoints& points) const {
 template <class Hardening>
 bool Hill::return_to_yield(const Hardening& hardening, const std::array<Lanes, 3>& z, Lanes q,
                            MaterialPoints& points) const {
-  const auto [D0, D1, D2] = stiffness_;
+  const double D0 = stiffness_[0], D1 = stiffness_[1], D2 = stiffness_[2];
   // The weakest mode there is bounds the root of (5) from above.
   double softest = infinite;
   for (const double D : stiffness_)
@@ -269,7 +269,8 @@ bool Hill::return_to_yield(const Hardening& hardening, const std::array<Lanes, 3
         const Lanes all = 1.0 / (f0 * f1 * f2);
         const Lanes k0 = f1 * f2 * all, k1 = f0 * f2 * all, k2 = f0 * f1 * all;
         const Lanes s0 = z[0] * k0, s1 = z[1] * k1, s2 = z[2] * k2;
-        const Lanes now = sqrt(s0 * s0 + s1 * s1 + s2 * s2 + 1e-300), inverse = 1.0 / now;
+        const Lanes square = s0 * s0 + s1 * s1 + s2 * s2 + 1e-300, inverse = inverse_sqrt(square);
+        const Lanes now = square * inverse;
         const Lanes w0 = k0 * s0 * s0, w1 = k1 * s1 * s1, w2 = k2 * s2 * s2;
         const Lanes now_slope = -(D0 * w0 + D1 * w1 + D2 * w2) * inverse;
         const Lanes strain_slope = (w0 + w1 + w2) * inverse;
@@ -279,12 +280,13 @@ bool Hill::return_to_yield(const Hardening& hardening, const std::array<Lanes, 3
         slope = (hardening.slope(strain) * strain_slope - flow * now_slope * inverse) * inverse;
       },
       upper, m);
-  const Lanes s0 = z[0] / (1.0 + m * D0), s1 = z[1] / (1.0 + m * D1), s2 = z[2] / (1.0 + m * D2);
+  const Lanes f0 = 1.0 + m * D0, f1 = 1.0 + m * D1, f2 = 1.0 + m * D2, all = 1.0 / (f0 * f1 * f2);
+  const Lanes s0 = z[0] * (f1 * f2 * all), s1 = z[1] * (f0 * f2 * all), s2 = z[2] * (f0 * f1 * all);
   points.plastic_strain += m * sqrt(s0 * s0 + s1 * s1 + s2 * s2);
   points.xx -= m * (return_[0][0] * s0 + return_[1][0] * s1);
   points.yy -= m * (return_[0][1] * s0 + return_[1][1] * s1);
   points.zz -= m * (return_[0][2] * s0 + return_[1][2] * s1);
-  points.xy /= 1.0 + m * D2;
+  points.xy *= f0 * f1 * all;
   return converged;
 }
 

@@ -40,10 +40,16 @@ Lanes each_lane(Lanes v, Function&& f) {
   return result;
 }
 
-// Two things that GCC does not find the instruction for.
+// What GCC does not find the instruction for.
 #ifdef __AVX512DQ__
 inline Lanes sqrt(Lanes v) {
   return _mm512_maskz_sqrt_pd(0xFF, v);  // GCC 12 warns falsely about the plain one
+}
+/// 1/sqrt(v) to the last digit or two, in a third of the time of the two operations.
+inline Lanes inverse_sqrt(Lanes v) {
+  Lanes y = _mm512_maskz_rsqrt14_pd(0xFF, v);
+  y *= 1.5 - 0.5 * v * y * y;
+  return y * (1.5 - 0.5 * v * y * y);
 }
 inline bool any(LaneMask mask) {
   return _mm512_movepi64_mask(reinterpret_cast<__m512i>(mask)) != 0;
@@ -51,6 +57,9 @@ inline bool any(LaneMask mask) {
 #else
 inline Lanes sqrt(Lanes v) {
   return each_lane(v, [](double x) { return std::sqrt(x); });
+}
+inline Lanes inverse_sqrt(Lanes v) {
+  return 1.0 / sqrt(v);
 }
 inline bool any(LaneMask mask) {
   return (mask[0] | mask[1] | mask[2] | mask[3] | mask[4] | mask[5] | mask[6] | mask[7]) != 0;

@@ -18,7 +18,7 @@ template <class Evaluate>
 bool find_roots(const Evaluate& evaluate, Lanes upper, Lanes& x) {
   constexpr int most_iterations = 100, unhindered = 30;
   // A root at the very end must stay inside when it is rounded.
-  Lanes low{}, high = upper * (1.0 + 1e-9), value{}, slope{};
+  Lanes low{}, high = upper * (1.0 + 1e-9), value{}, slope{}, before{};
   x = Lanes{};
   double towards_zero = 1e-2;
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
@@ -35,6 +35,11 @@ bool find_roots(const Evaluate& evaluate, Lanes upper, Lanes& x) {
       next = leaves ? between : next;
     }
     x = open ? next : x;
+    // Newton squares the error: a step whose error will have shrunk far below the tolerance needs no other look.
+    const Lanes after = value * value * value;
+    const LaneMask settled = ~open | (~leaves & (abs(after) <= 0.01 * return_tolerance * before * before));
+    if (!any(~settled)) return true;
+    before = leaves ? Lanes{} : value;
     towards_zero *= towards_zero;
   }
   return false;
