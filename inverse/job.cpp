@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "data/curve.hpp"
+#include "forward/scene/preset.hpp"
 #include "forward/scene/scene.hpp"
 #include "inverse/parameter_space.hpp"
 #include "models/base/atomic_file.hpp"
@@ -210,7 +211,8 @@ Job read_job(const fs::path& file, const std::string& name, const Locate& locate
   const Contents contents = Document::parse(source.content, name).read(job_blocks());
   const Values& top = contents.at("");
   InputFile scene = load(top.text("scene"), locate);
-  const Document base = Document::parse(scene.content, locate(scene.name).string());
+  Document base = Document::parse(scene.content, locate(scene.name).string());
+  if (top.has("preset")) forward::impose_preset(base, top.text("preset"), top.where("preset"));
   forward::read_scene(base);
 
   Job job{.title = top.text("title"),

@@ -1,3 +1,4 @@
+#include "forward/scene/preset.hpp"
 #include "inverse/job.hpp"
 #include "inverse/optimiser.hpp"
 
@@ -15,6 +16,9 @@ std::vector<Block> declare() {
        .meaning = "the calibration itself",
        .parameters = {text("title", "what this calibration is about"),
                       text("scene", "base scene whose parameters are to be found, a path relative to this file"),
+                      text("preset", "what accuracy may cost: written over the scene's own keys (`kerf list preset`)",
+                           {forward::preset_names.begin(), forward::preset_names.end()})
+                          .if_given(),
                       list("observables", "what simulated and measured cuts are compared by", observables())},
        .required = true},
       {.path = "curve",

@@ -93,15 +93,16 @@ Sweep lay_out_sweep(const Document& scene, const std::vector<std::string>& axes,
   if (sweep.axes.empty()) throw InputError(fmt::format("{}: nothing to sweep", where), ExitCode::usage);
   refuse_shared_paths(sweep.axes, where);
   name_axes(sweep.axes);
+  const std::vector<std::size_t> order = order_of_writing(sweep.axes);
   const auto several =
       std::count_if(sweep.axes.begin(), sweep.axes.end(), [](const SweepAxis& axis) { return axis.values.size() > 1; });
   for (auto& choice : zip ? zipped(sweep.axes, where) : product(sweep.axes, where)) {
     SweepRun run{.choice = std::move(choice), .scene = scene, .label = {}};
     std::vector<std::string> told;
+    for (const std::size_t a : order) apply(sweep.axes[a], sweep.value(run, a), run.scene, known);
     for (std::size_t a = 0; a < sweep.axes.size(); ++a) {
       const SweepAxis& axis = sweep.axes[a];
       const SweepValue& value = sweep.value(run, a);
-      apply(axis, value, run.scene, known);
       // A key with one value does not tell this run from another.
       if (axis.values.size() > 1 || several == 0) told.push_back(axis.label(value));
     }

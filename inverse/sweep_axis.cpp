@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <numeric>
 #include <set>
 #include <stdexcept>
 
+#include "forward/scene/preset.hpp"
 #include "models/base/error.hpp"
 #include "models/base/quantity.hpp"
 #include "models/base/units.hpp"
@@ -17,6 +19,7 @@ namespace kerf::inverse {
 namespace {
 
 constexpr std::string_view leave_out = "-";
+constexpr std::string_view preset_path = "preset";
 constexpr double most_values = 1000;
 
 std::vector<std::string> split(std::string_view text, char separator) {
@@ -255,6 +258,10 @@ SweepAxis parse_axis(std::string_view text, const std::vector<Block>& known, std
 
 void apply(const SweepAxis& axis, const SweepValue& value, Document& scene, const std::vector<Block>& known) {
   for (const std::string& path : axis.paths) {
+    if (path == preset_path && !value.absent) {
+      forward::impose_preset(scene, value.text, scene.name());
+      continue;
+    }
     if (value.absent) {
       leave_out_key(path, scene, known);
       continue;
@@ -267,19 +274,27 @@ void apply(const SweepAxis& axis, const SweepValue& value, Document& scene, cons
   }
 }
 
+std::vector<std::size_t> order_of_writing(const std::vector<SweepAxis>& axes) {
+  std::vector<std::size_t> order(axes.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_partition(order.begin(), order.end(), [&](std::size_t a) { return axes[a].varies(preset_path); });
+  return order;
+}
+
 void apply_settings(const std::vector<std::string>& settings, Document& scene, const std::vector<Block>& known,
                     std::string_view where) {
   std::set<std::string> set;
+  std::vector<SweepAxis> axes;
   for (const std::string& setting : settings) {
-    const SweepAxis axis = parse_axis(setting, known, where);
+    const SweepAxis& axis = axes.emplace_back(parse_axis(setting, known, where));
     const auto refuse = [&](const std::string& why) {
       throw InputError(fmt::format("{}: {}: {}", where, setting, why), ExitCode::usage);
     };
     if (axis.values.size() != 1) refuse("one value belongs here; `kerf sweep` takes several");
     for (const std::string& path : axis.paths)
       if (!set.insert(path).second) refuse(fmt::format("\"{}\" is set twice", path));
-    apply(axis, axis.values.front(), scene, known);
   }
+  for (const std::size_t a : order_of_writing(axes)) apply(axes[a], axes[a].values.front(), scene, known);
 }
 
 }  // namespace kerf::inverse

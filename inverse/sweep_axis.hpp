@@ -46,7 +46,11 @@ SweepAxis parse_axis(std::string_view text, const std::vector<Block>& known, std
                      bool repeats = false);
 
 /// Writes the value into the scene. A table that the scene lacks is added; what else must stand there says the reader.
+/// A preset is written over the scene's own keys (see forward/scene/preset.hpp).
 void apply(const SweepAxis& axis, const SweepValue& value, Document& scene, const std::vector<Block>& known);
+
+/// Indices of the axes in the order to `apply` them: a preset comes first, so that keys given beside it count.
+std::vector<std::size_t> order_of_writing(const std::vector<SweepAxis>& axes);
 
 /// The scene with `PATH=value` written in, as `kerf simulate --set` does: one value each, no path twice.
 void apply_settings(const std::vector<std::string>& settings, Document& scene, const std::vector<Block>& known,

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "forward/scene/preset.hpp"
 #include "models/base/error.hpp"
 
 namespace kerf::forward {
@@ -15,7 +16,12 @@ std::vector<Block> declare() {
       {.path = "",
        .variant = "",
        .meaning = "the scene itself",
-       .parameters = {text("title", "what this scene shows")},
+       .parameters = {text("title", "what this scene shows"),
+                      text("preset",
+                           "what accuracy may cost: gives values to the knobs that `kerf list preset` shows, except "
+                           "those that the scene sets itself",
+                           {preset_names.begin(), preset_names.end()})
+                          .if_given()},
        .required = true},
       {.path = "cohesive",
        .variant = "",
@@ -275,7 +281,7 @@ const std::vector<Block>& scene_blocks() {
 }
 
 Scene read_scene(const Document& document) {
-  const Contents contents = document.read(scene_blocks());
+  const Contents contents = with_preset(document).read(scene_blocks());
   const Values& window = contents.at("window");
   const Values& resolution = contents.at("resolution");
   const Values& steady = contents.at("steady_state");

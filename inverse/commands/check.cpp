@@ -26,7 +26,9 @@ void check_curve(const std::filesystem::path& file) {
 
 void check_scene(const Document& document) {
   const forward::Scene scene = forward::read_scene(document);
-  fmt::print("{}: ok, a scene: {}\n", document.name(), scene.title);
+  const auto preset = document.text_at("preset");
+  fmt::print("{}: ok, a scene: {}{}\n", document.name(), scene.title,
+             preset ? fmt::format(" (preset {})", *preset) : "");
 }
 
 void check_job(const std::filesystem::path& file) {

@@ -12,6 +12,7 @@
 #include "forward/mpm/window.hpp"
 #include "forward/plan.hpp"
 #include "forward/record/cut_file.hpp"
+#include "forward/scene/preset.hpp"
 #include "inverse/commands/commands.hpp"
 #include "inverse/commands/expected_cost.hpp"
 
@@ -38,6 +39,7 @@ constexpr const char* never =
     "heat, rate dependence, a deforming tool, a crack that leaves its plane, out-of-plane strain";
 
 struct Explanation {
+  Document document;
   Scene scene;
   State state;  ///< laid out
   std::vector<Line> step;
@@ -77,11 +79,12 @@ Explanation explanation_of(const std::string& file) {
   std::optional<forward::KeptCut> run;
   if (std::filesystem::path(file).extension() == ".h5") run = forward::read_cut(file);
   const Document document = run ? run->scene : Document::load(file);
-  Explanation all{.scene = forward::read_scene(document),
+  Explanation all{.document = document,
+                  .scene = forward::read_scene(document),
                   .state = {},
                   .step = {},
                   .from_run = false,
-                  .absent = left_out(document),
+                  .absent = left_out(forward::with_preset(document)),
                   .cost = {},
                   .seconds_per_particle_step = 0,
                   .run = {}};
@@ -216,10 +219,21 @@ Json as_json(Explanation& all) {
   return json;
 }
 
+void print_preset(const Document& document) {
+  const std::vector<forward::PresetSetting> settings = forward::preset_settings(document);
+  if (settings.empty()) return;
+  fmt::print("Preset {}\n", document.text_at("preset").value());
+  for (const forward::PresetSetting& setting : settings)
+    fmt::print("  {} = {}{}\n", setting.path, setting.value,
+               setting.overruled ? ", but the scene's own value counts" : "");
+  fmt::print("\n");
+}
+
 void explain(const std::string& file, bool json) {
   Explanation all = explanation_of(file);
   if (json) return fmt::print("{}\n", as_json(all).dump(2));
   print_cut(all.scene);
+  print_preset(all.document);
   print_discretisation(all.scene, all.state);
   print_step(all);
   print_memory(all.state);

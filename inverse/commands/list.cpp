@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "data/curve.hpp"
+#include "forward/scene/preset.hpp"
 #include "forward/scene/scene.hpp"
 #include "inverse/commands/commands.hpp"
 #include "inverse/job.hpp"
@@ -75,6 +76,24 @@ void print(const Block& block) {
   fmt::print("\n");
 }
 
+/// What each preset gives to each knob.
+void print_presets() {
+  std::size_t path = 0;
+  for (const forward::PresetKnob& knob : forward::preset_knobs())
+    path = std::max(path, std::string_view(knob.path).size());
+  fmt::print(
+      "presets\n  preset = \"NAME\" at the top of a scene gives these values to the keys that the scene leaves out;\n"
+      "  `kerf simulate --preset NAME`, and preset = \"NAME\" in a job, write them over the scene's own\n");
+  const auto row = [&](const char* key, const std::array<const char*, forward::preset_count>& values) {
+    fmt::print("    {:{}}", key, path);
+    for (const char* value : values) fmt::print("  {:>10}", value);
+    fmt::print("\n");
+  };
+  row("key", forward::preset_names);
+  for (const forward::PresetKnob& knob : forward::preset_knobs()) row(knob.path, knob.values);
+  fmt::print("\n");
+}
+
 /// A family is a kind of file ("scene"), a block ("cohesive.mode_I" or "mode_I"), a group of blocks ("cohesive") or a
 /// law ("j2").
 bool belongs(const Source& source, const Block& block, const std::string& family) {
@@ -83,7 +102,8 @@ bool belongs(const Source& source, const Block& block, const std::string& family
 }
 
 void list(const std::string& family) {
-  std::vector<std::string> families;
+  std::vector<std::string> families{"preset"};
+  if (family == families.front()) return print_presets();
   const auto add = [&](const std::string& name) {
     if (!name.empty() && std::find(families.begin(), families.end(), name) == families.end()) families.push_back(name);
   };
@@ -101,6 +121,7 @@ void list(const std::string& family) {
       print(block);
     }
   }
+  if (family.empty() || family == "scene") print_presets();
   if (found) return;
   const auto near = nearest(family, families);
   std::string names;
@@ -114,7 +135,8 @@ void list(const std::string& family) {
 
 void add_list(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("list", "Print the blocks and parameters that input files may hold");
-  auto* family = command->add_option("family", "a file (scene, job, curve), a block, or a law; all if left out");
+  auto* family =
+      command->add_option("family", "a file (scene, job, curve), a block, a law, or preset; all if left out");
   command->callback([family, &exit_code] {
     list(family->empty() ? "" : family->as<std::string>());
     exit_code = static_cast<int>(ExitCode::success);

@@ -14,6 +14,7 @@
 #include "forward/record/cut_file.hpp"
 #include "forward/record/result_json.hpp"
 #include "forward/run.hpp"
+#include "forward/scene/preset.hpp"
 #include "inverse/commands/commands.hpp"
 #include "inverse/commands/interrupt.hpp"
 #include "inverse/sweep_axis.hpp"
@@ -126,13 +127,14 @@ void print_table(const forward::CutResult& r) {
 }
 
 struct Options {
-  std::string scene, output;
+  std::string scene, output, preset;
   std::vector<std::string> settings;
   bool json = false;
 };
 
 ExitCode simulate(const Options& options) {
   Document document = Document::load(options.scene);
+  if (!options.preset.empty()) forward::impose_preset(document, options.preset, "kerf simulate --preset");
   inverse::apply_settings(options.settings, document, forward::scene_blocks(), "kerf simulate --set");
   const forward::Scene scene = forward::read_scene(document);
   if (!options.output.empty()) require_writable(options.output);
@@ -163,6 +165,8 @@ void add_simulate(CLI::App& app, int& exit_code) {
   const auto options = std::make_shared<Options>();
   command->add_option("scene", options->scene, "scene file (TOML)")->required();
   command->add_option("-o,--output", options->output, "keep the cut in this HDF5 file, with .xdmf for ParaView beside");
+  command->add_option("--preset", options->preset,
+                      "draft, standard or reference: over what the scene says (see `kerf list preset`)");
   command->add_option("--set", options->settings, "PATH=VALUE, as in tool.rake=30deg: another value than the scene's")
       ->allow_extra_args(false);
   command->add_flag("--json", options->json, "print the result as JSON");

@@ -93,6 +93,12 @@ bool Document::has(std::string_view path) const {
   return find_node(tree_->root, path) != nullptr;
 }
 
+std::optional<std::string> Document::text_at(std::string_view path) const {
+  const Node* node = find_node(tree_->root, path);
+  const auto* words = node ? std::get_if<std::string>(&node->value) : nullptr;
+  return words ? std::optional(*words) : std::nullopt;
+}
+
 const Parameter& Document::find_number(std::string_view path, const std::vector<Block>& known, std::string_view where) {
   const auto is_number = [](const Parameter& parameter) { return parameter.kind == Parameter::Kind::number; };
   return find_declared(path, known, where, "numeric parameter", is_number);

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -40,6 +41,9 @@ class Document {
 
   /// True when the file itself holds a key or table at this dotted path.
   bool has(std::string_view path) const;
+
+  /// The text at this dotted path, if the file itself holds one there.
+  std::optional<std::string> text_at(std::string_view path) const;
 
   /// Writes `value` (consistent units) at a dotted path such as "cohesive.mode_I.toughness", creating nothing: throws
   /// InputError naming the nearest known path when `path` is not a numeric parameter of a block in this document.
