@@ -58,6 +58,7 @@ CutResult run(const Scene& scene, const std::function<bool(const Progress&)>& pr
     result.refusals.push_back(fmt::format("broke down after {:.3g} mm: {}", state.tool.x, state.breakdown));
   result.cost.wall_seconds = elapsed();
   result.cost.stages = clock.times();
+  result.cost.processor_seconds = clock.processor_seconds();
   summarise(result, recorder, state, scene);
   judge(result, scene);
   return result;

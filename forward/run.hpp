@@ -55,6 +55,7 @@ constexpr const char* between_steps_name = "between steps";
 
 struct Cost {
   double wall_seconds = 0;
+  double processor_seconds = 0;  ///< of the thread that simulates
   std::int64_t steps = 0, particle_steps = 0;
   std::vector<StageTime> stages;
 };

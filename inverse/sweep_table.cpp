@@ -78,7 +78,7 @@ std::vector<Leaf> leaves_of(const std::optional<RunRecord>& record) {
         {"residue_share", "1",
          finite(number_at(record->result, "/ledger/residue") / number_at(record->result, "/ledger/tool_work"))});
     // One simulation keeps one core busy.
-    leaves.push_back({"core_seconds", "s", finite(number_at(record->result, "/cost/wall_s"))});
+    leaves.push_back({"core_seconds", "s", finite(number_at(record->result, "/cost/processor_s"))});
   }
   std::erase_if(leaves, [](const Leaf& leaf) { return leaf.name == "accepted"; });
   leaves.push_back({"accepted", "1", record->accepted});

@@ -47,6 +47,7 @@ Json cost_of(const Cost& cost) {
   for (const StageTime& time : cost.stages)
     stages.push_back({{"stage", time.stage}, {"cpu_s", finite_or_null(time.seconds)}});
   return {{"wall_s", finite_or_null(cost.wall_seconds)},
+          {"processor_s", finite_or_null(cost.processor_seconds)},
           {"steps", cost.steps},
           {"particle_steps", cost.particle_steps},
           {"particle_steps_per_s", finite_or_null(static_cast<double>(cost.particle_steps) / cost.wall_seconds)},

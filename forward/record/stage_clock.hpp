@@ -40,6 +40,8 @@ class StageClock {
     between_ += now() - begin;
   }
 
+  /// Since this clock was made.
+  double processor_seconds() const { return std::chrono::duration<double>(now() - begin_).count(); }
   /// The stages in their order, and last what was done between steps; seconds are scaled to all steps.
   std::vector<StageTime> times() const;
 
@@ -55,6 +57,7 @@ class StageClock {
   std::vector<Duration> sampled_;
   std::int64_t sample_every_;
   Duration between_{};
+  Duration begin_ = now();
   std::int64_t steps_ = 0;
 };
 

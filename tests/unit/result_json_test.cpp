@@ -30,7 +30,7 @@ TEST(ResultJson, HoldsEveryPromisedKey) {
     EXPECT_TRUE(json.contains(key)) << key;
   for (const char* key : {"tool_work", "fracture", "plastic", "elastic", "kinetic", "friction", "damping", "residue"})
     EXPECT_TRUE(json["ledger"].contains(key)) << key;
-  for (const char* key : {"wall_s", "particle_steps", "particle_steps_per_s"})
+  for (const char* key : {"wall_s", "processor_s", "particle_steps", "particle_steps_per_s"})
     EXPECT_TRUE(json["cost"].contains(key)) << key;
 }
 

@@ -221,7 +221,7 @@ TEST(Sweep, EveryRunIsARowAndEveryNumberOfAResultAColumn) {
     result.chip_ratio = {1.5, 0.1};
     result.ledger.tool_work = 10;
     result.ledger.plastic = 9.9;
-    result.cost.wall_seconds = 3;
+    result.cost.processor_seconds = 3;
     result.branch = scene.friction ? forward::Branch::touching : forward::Branch::bending;
     result.accepted = !scene.friction || scene.friction->yield_cap != 0.5;
     if (!result.accepted) result.refusals = {"said \"no\", twice", "and again"};
