@@ -113,6 +113,13 @@ Sweep lay_out_sweep(const Document& scene, const std::vector<std::string>& axes,
   return sweep;
 }
 
+std::vector<RunRequest> requests_of(const Sweep& sweep) {
+  std::vector<RunRequest> requests;
+  for (const SweepRun& run : sweep.runs)
+    requests.push_back({.scene = run.scene, .label = run.label, .cut = requests.size()});
+  return requests;
+}
+
 std::vector<std::vector<std::size_t>> lines_along(const Sweep& sweep, std::size_t axis) {
   std::vector<std::vector<std::size_t>> lines;
   std::map<std::vector<std::size_t>, std::size_t> place;  // of the line with these choices of the other axes

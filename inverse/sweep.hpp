@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "inverse/run_database.hpp"
 #include "inverse/sweep_axis.hpp"
 #include "models/base/document.hpp"
 
@@ -30,6 +31,8 @@ struct Sweep {
 /// can be read is an error; a single combination that its reader refuses stays a run, whose result is that refusal.
 /// Throws InputError.
 Sweep lay_out_sweep(const Document& scene, const std::vector<std::string>& axes, bool zip, std::string_view where);
+
+std::vector<RunRequest> requests_of(const Sweep& sweep);
 
 /// Runs that differ in axis `axis` only, in order of appearance; with `zip` all of them, since nothing else is held.
 std::vector<std::vector<std::size_t>> lines_along(const Sweep& sweep, std::size_t axis);

@@ -16,7 +16,7 @@ using Json = nlohmann::ordered_json;
 
 using namespace hdf5;
 
-void write_column(hid_t group, const SweepColumn& column) {
+void write_column(hid_t group, const Column& column) {
   const hsize_t rows = column.cells.size();
   const Handle space(H5Screate_simple(1, &rows, nullptr), H5Sclose, "data space");
   const bool words = std::any_of(column.cells.begin(), column.cells.end(), [](const Json& c) { return c.is_string(); });
@@ -50,14 +50,14 @@ void copy_history(hid_t runs, const fs::path& cut_file, const std::string& name)
   check(H5Ocopy(cut, "history", runs, name.c_str(), H5P_DEFAULT, H5P_DEFAULT), "history");
 }
 
-void write_h5(hid_t h5, const Sweep& sweep, const std::vector<SweepColumn>& columns,
+void write_h5(hid_t h5, const Sweep& sweep, const std::vector<Column>& columns,
               const std::vector<fs::path>& cut_files) {
   write_attribute(h5, "title", forward::read_scene(sweep.scene).title);
   write_attribute(h5, "code_version", KERF_VERSION);
   write_attribute(h5, "scene", sweep.scene.canonical());
   {
     const Handle group(H5Gcreate2(h5, "columns", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose, "group");
-    for (const SweepColumn& column : columns) write_column(group, column);
+    for (const Column& column : columns) write_column(group, column);
   }
   const Handle runs(H5Gcreate2(h5, "runs", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose, "group");
   for (std::size_t run = 0; run < cut_files.size(); ++run)
@@ -66,7 +66,7 @@ void write_h5(hid_t h5, const Sweep& sweep, const std::vector<SweepColumn>& colu
 
 }  // namespace
 
-void write_sweep(const fs::path& h5, const Sweep& sweep, const std::vector<SweepColumn>& columns,
+void write_sweep(const fs::path& h5, const Sweep& sweep, const std::vector<Column>& columns,
                  const std::vector<fs::path>& cut_files) {
   write_file(h5, [&](hid_t file) { write_h5(file, sweep, columns, cut_files); });
 }

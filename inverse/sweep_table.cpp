@@ -94,20 +94,6 @@ constexpr std::array<const char*, 17> leading{"F_c",           "F_c_se",        
                                               "residue_share", "steady",        "accepted",
                                               "refusals",      "core_seconds"};
 
-std::string cell_text(const Json& cell) {
-  if (cell.is_null()) return "";
-  if (cell.is_number_float()) return fmt::format("{}", cell.get<double>());
-  if (!cell.is_string()) return cell.dump();
-  auto text = cell.get<std::string>();
-  if (text.find_first_of(",;\"\r\n") == text.npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"') quoted += '"';
-    quoted += c;
-  }
-  return quoted + '"';
-}
-
 Json value_json(const SweepAxis& axis, const SweepValue& value) {
   if (value.absent) return nullptr;
   return axis.numeric ? Json(*value.shown) : Json(value.text);
@@ -192,13 +178,9 @@ Json intercepts_json(const SweepIntercepts& intercepts) {
 
 }  // namespace
 
-std::string SweepColumn::heading() const {
-  return unit == "1" ? name : fmt::format("{}[{}]", name, unit);
-}
-
-std::vector<SweepColumn> sweep_columns(const Sweep& sweep, const SweepRecords& records) {
+std::vector<Column> sweep_columns(const Sweep& sweep, const SweepRecords& records) {
   const std::size_t count = sweep.runs.size();
-  std::vector<SweepColumn> fixed{{.name = "run", .unit = "1", .cells = {}}}, found;
+  std::vector<Column> fixed{{.name = "run", .unit = "1", .cells = {}}}, found;
   for (std::size_t run = 0; run < count; ++run) fixed.front().cells.push_back(run + 1);
   for (std::size_t a = 0; a < sweep.axes.size(); ++a) {
     fixed.push_back({.name = sweep.axes[a].name(), .unit = sweep.axes[a].unit, .cells = {}});
@@ -218,18 +200,6 @@ std::vector<SweepColumn> sweep_columns(const Sweep& sweep, const SweepRecords& r
     }
   fixed.insert(fixed.end(), std::make_move_iterator(found.begin()), std::make_move_iterator(found.end()));
   return fixed;
-}
-
-std::string sweep_csv(const std::vector<SweepColumn>& columns) {
-  std::vector<std::string> cells;
-  cells.reserve(columns.size());
-  for (const SweepColumn& column : columns) cells.push_back(cell_text(column.heading()));
-  std::string csv = fmt::format("{}\n", fmt::join(cells, ","));
-  for (std::size_t row = 0; row < columns.front().cells.size(); ++row) {
-    for (std::size_t c = 0; c < columns.size(); ++c) cells[c] = cell_text(columns[c].cells[row]);
-    csv += fmt::format("{}\n", fmt::join(cells, ","));
-  }
-  return csv;
 }
 
 std::vector<SweepIntercepts> sweep_intercepts(const Sweep& sweep, const SweepRecords& records) {

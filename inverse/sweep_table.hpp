@@ -7,6 +7,7 @@
 
 #include "inverse/run_record.hpp"
 #include "inverse/sweep.hpp"
+#include "inverse/table.hpp"
 #include "models/chip/measured_cut.hpp"
 #include "models/chip/reduction.hpp"
 
@@ -15,21 +16,9 @@ namespace kerf::inverse {
 /// One record per run of a sweep; none: not run yet.
 using SweepRecords = std::vector<std::optional<RunRecord>>;
 
-/// A column of the table; cells are numbers, words, booleans, or null for what a run does not have.
-struct SweepColumn {
-  std::string name;
-  std::string unit = "1";
-  std::vector<nlohmann::ordered_json> cells;
-
-  std::string heading() const;  ///< "F_c[N/m]"
-};
-
 /// Every run is a row, refused ones with their verdict: the swept values, what one looks at first, and then every other
 /// number that forward::result_json holds.
-std::vector<SweepColumn> sweep_columns(const Sweep& sweep, const SweepRecords& records);
-
-/// sweep.csv: the unit in the header, empty cells for what is not known.
-std::string sweep_csv(const std::vector<SweepColumn>& columns);
+std::vector<Column> sweep_columns(const Sweep& sweep, const SweepRecords& records);
 
 /// F_c of runs that differ in the depth of cut only, extrapolated to zero depth as `kerf reduce` does it. The forces
 /// count as if they were measured without known errors: the scatter about each fit sets its interval, because the

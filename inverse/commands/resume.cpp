@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <memory>
 #include <string>
 
@@ -24,11 +26,12 @@ void add_resume(CLI::App& app, int& exit_code) {
   command->footer("No finished run is repeated, and the answer is the one an undisturbed session gives, to the bit.");
   command->callback([options, &exit_code] {
     const std::string code = inverse::code_identity();
-    if (inverse::SweepFolder::holds_one(options->folder)) {
+    if (const std::string kind = inverse::SceneFolder::kind_of(options->folder); !kind.empty()) {
       if (options->budget.max_runs > 0)
-        throw InputError("kerf resume: --max-runs belongs to calibrations; a sweep has all its runs", ExitCode::usage);
-      inverse::SweepFolder folder = inverse::SweepFolder::open(options->folder, options->budget.parallel, code);
-      exit_code = static_cast<int>(run_sweep(folder, code, options->json));
+        throw InputError(fmt::format("kerf resume: --max-runs belongs to calibrations; a {} has all its runs", kind),
+                         ExitCode::usage);
+      inverse::SceneFolder folder = inverse::SceneFolder::open(options->folder, options->budget.parallel, code);
+      exit_code = static_cast<int>(run_sweep(folder, sweep_in(folder), code, options->json));
       return;
     }
     inverse::Folder folder = inverse::Folder::open(options->folder, options->budget, code);

@@ -7,33 +7,39 @@
 #include <vector>
 
 #include "inverse/commands/commands.hpp"
+#include "inverse/commands/scene_session.hpp"
 #include "inverse/commands/sweep_session.hpp"
 #include "inverse/folder.hpp"
+#include "models/base/atomic_file.hpp"
 
 namespace kerf::commands {
 namespace {
 
 struct Options {
   std::string scene, output;
-  inverse::SweepRequest request;
-  bool no_cuts = false, dry_run = false, json = false;
+  std::vector<std::string> axes;
+  int jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  bool zip = false, no_cuts = false, dry_run = false, json = false;
 };
 
-ExitCode sweep(Options options) {
-  inverse::SweepRequest& request = options.request;
-  request.keep_cuts = !options.no_cuts;
-  if (request.jobs == 0) request.jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+ExitCode sweep(const Options& options) {
+  const inverse::InputFile scene{.name = options.scene, .content = read_file(options.scene)};
+  const inverse::Sweep sweep =
+      inverse::lay_out_sweep(Document::parse(scene.content, scene.name), options.axes, options.zip, "kerf sweep");
   if (options.dry_run) {
-    print_sweep_cost(
-        inverse::lay_out_sweep(Document::load(options.scene), request.axes, request.zip, "kerf sweep --dry-run"),
-        request.jobs);
+    print_cost(inverse::requests_of(sweep), options.jobs);
     return ExitCode::success;
   }
   if (options.output.empty())
     throw InputError("kerf sweep: -o DIR is missing: a folder for the journal and the results", ExitCode::usage);
   const std::string code = inverse::code_identity();
-  inverse::SweepFolder folder = inverse::SweepFolder::create(options.output, options.scene, request, code);
-  return run_sweep(folder, code, options.json);
+  inverse::SceneFolder folder = inverse::SceneFolder::create(options.output, scene,
+                                                             {.kind = "sweep",
+                                                              .asked = {{"axes", options.axes}, {"zip", options.zip}},
+                                                              .jobs = options.jobs,
+                                                              .keep_cuts = !options.no_cuts},
+                                                             code);
+  return run_sweep(folder, sweep, code, options.json);
 }
 
 }  // namespace
@@ -41,12 +47,11 @@ ExitCode sweep(Options options) {
 void add_sweep(CLI::App& app, int& exit_code) {
   auto* command = app.add_subcommand("sweep", "Virtual experiments: simulate a scene for many values of its keys");
   const auto options = std::make_shared<Options>();
-  options->request.jobs = 0;
   command->add_option("scene", options->scene, "scene file (TOML)")->required();
-  command->add_option("axes", options->request.axes, "PATH=VALUES, see below; several make a grid")->required();
+  command->add_option("axes", options->axes, "PATH=VALUES, see below; several make a grid")->required();
   command->add_option("-o,--output", options->output, "folder for the journal and the results");
-  command->add_flag("--zip", options->request.zip, "pair the values of the paths instead of the full grid");
-  command->add_option("-j,--jobs,--parallel", options->request.jobs, "simulations at a time (default: one per core)")
+  command->add_flag("--zip", options->zip, "pair the values of the paths instead of the full grid");
+  command->add_option("-j,--jobs,--parallel", options->jobs, "simulations at a time (default: one per core)")
       ->check(CLI::PositiveNumber);
   command->add_flag("--no-cuts", options->no_cuts, "keep the table only: no cuts/NNN.h5, no histories in sweep.h5");
   command->add_flag("--dry-run", options->dry_run, "say how many runs and what they will cost");

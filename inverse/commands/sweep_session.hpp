@@ -1,6 +1,7 @@
 #pragma once
 
-#include "inverse/sweep_folder.hpp"
+#include "inverse/scene_folder.hpp"
+#include "inverse/sweep.hpp"
 #include "models/base/error.hpp"
 
 namespace kerf::commands {
@@ -8,9 +9,9 @@ namespace kerf::commands {
 /// Runs or continues the sweep in `folder` and writes what it finds there: sweep.csv, sweep.json, sweep.h5, and the
 /// report with its figures (*.svg). Results go to standard output, progress to standard error. Ctrl-C abandons the runs
 /// under way, leaves a valid journal and a table of what there is, and says how to go on.
-ExitCode run_sweep(inverse::SweepFolder& folder, const std::string& code, bool json);
+ExitCode run_sweep(inverse::SceneFolder& folder, const inverse::Sweep& sweep, const std::string& code, bool json);
 
-/// How many runs, and what they will cost.
-void print_sweep_cost(const inverse::Sweep& sweep, int jobs);
+/// The sweep that a folder's request asks for.
+inverse::Sweep sweep_in(const inverse::SceneFolder& folder);
 
 }  // namespace kerf::commands

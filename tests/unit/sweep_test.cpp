@@ -179,7 +179,7 @@ Ran run(const Sweep& sweep, const fs::path& journal_file, const inverse::Simulat
   return ran;
 }
 
-const inverse::SweepColumn& column(const std::vector<inverse::SweepColumn>& columns, const std::string& name) {
+const inverse::Column& column(const std::vector<inverse::Column>& columns, const std::string& name) {
   for (const auto& candidate : columns)
     if (candidate.name == name) return candidate;
   throw std::logic_error("no column " + name);
@@ -205,8 +205,8 @@ TEST(Sweep, ResumesWithoutRepeatingARunAndWithTheSameTable) {
 
   const Ran rest = run(sweep, folder / "part.jsonl", testing::failing(0.3, testing::synthetic_cut));
   EXPECT_EQ(rest.simulated, 7u);
-  EXPECT_EQ(inverse::sweep_csv(inverse::sweep_columns(sweep, rest.records)),
-            inverse::sweep_csv(inverse::sweep_columns(sweep, whole.records)));
+  EXPECT_EQ(inverse::csv(inverse::sweep_columns(sweep, rest.records)),
+            inverse::csv(inverse::sweep_columns(sweep, whole.records)));
 }
 
 TEST(Sweep, EveryRunIsARowAndEveryNumberOfAResultAColumn) {
@@ -243,7 +243,7 @@ TEST(Sweep, EveryRunIsARowAndEveryNumberOfAResultAColumn) {
   EXPECT_EQ(column(columns, "ledger.plastic").heading(), "ledger.plastic[J/m]");
   EXPECT_EQ(column(columns, "deepest_penetration").unit, "cells");
 
-  const std::string csv = inverse::sweep_csv(columns);
+  const std::string csv = inverse::csv(columns);
   EXPECT_THAT(csv, ::testing::StartsWith("run,friction.coefficient,friction.yield_cap,verdict,F_c[N/m],F_c_se[N/m],"));
   EXPECT_THAT(csv, HasSubstr("\n1,,,accepted,8000,20,-4000,10,-0.5,bending,"));
   EXPECT_THAT(csv, HasSubstr("\"said \"\"no\"\", twice; and again\""));
