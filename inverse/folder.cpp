@@ -4,6 +4,7 @@
 
 #include <map>
 
+#include "forward/scene/preset.hpp"
 #include "models/base/atomic_file.hpp"
 #include "models/base/error.hpp"
 
@@ -27,9 +28,10 @@ std::vector<const InputFile*> inputs(const Job& job) {
   return all;
 }
 
-void apply(const BudgetOverride& budget, Job& job) {
-  if (budget.max_runs > 0) job.budget.max_runs = budget.max_runs;
-  if (budget.parallel > 0) job.budget.parallel = budget.parallel;
+void apply(const JobOverride& override, Job& job) {
+  if (override.max_runs > 0) job.budget.max_runs = override.max_runs;
+  if (override.parallel > 0) job.budget.parallel = override.parallel;
+  if (!override.preset.empty()) forward::impose_preset(job.scene, override.preset, job.source.name);
 }
 
 std::unique_ptr<Journal> open_journal(const fs::path& folder) {
@@ -39,7 +41,12 @@ std::unique_ptr<Journal> open_journal(const fs::path& folder) {
   return std::make_unique<Journal>(folder / journal_name);
 }
 
-void write_inputs(const fs::path& folder, const Job& job, const std::string& code) {
+/// A job under another preset is another job.
+std::string identity(const Job& job, const std::string& preset) {
+  return preset.empty() ? job.identity() : sha256(job.identity() + preset);
+}
+
+void write_inputs(const fs::path& folder, const Job& job, const std::string& preset, const std::string& code) {
   Json files = Json::array();
   const std::vector<const InputFile*> all = inputs(job);
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -47,7 +54,8 @@ void write_inputs(const fs::path& folder, const Job& job, const std::string& cod
     write_atomically(folder / copy, all[i]->content);
     files.push_back({{"name", all[i]->name}, {"copy", copy}, {"sha256", all[i]->hash()}});
   }
-  const Json manifest{{"job", job.identity()},
+  const Json manifest{{"job", identity(job, preset)},
+                      {"preset", preset},
                       {"code", code},
                       {"inputs", std::move(files)},
                       {"max_runs", job.budget.max_runs},
@@ -62,7 +70,7 @@ Json read_manifest(const fs::path& folder) {
         fmt::format("{}: holds no calibration (there is no {}); `kerf calibrate JOB.toml -o {}` begins one",
                     folder.string(), manifest_name, folder.string()));
   Json manifest = Json::parse(read_file(file), nullptr, false);
-  for (const char* key : {"job", "code", "inputs", "max_runs", "parallel"})
+  for (const char* key : {"job", "preset", "code", "inputs", "max_runs", "parallel"})
     if (manifest.is_discarded() || !manifest.contains(key))
       throw InputError(fmt::format("{}: is damaged; begin again in another folder", file.string()));
   return manifest;
@@ -95,15 +103,15 @@ Job read_copies(const fs::path& folder, const Json& manifest) {
 
 }  // namespace
 
-Folder Folder::create(const fs::path& folder, const fs::path& job_file, const BudgetOverride& budget,
+Folder Folder::create(const fs::path& folder, const fs::path& job_file, const JobOverride& override,
                       const std::string& code) {
   Job job = read_job(job_file);
-  apply(budget, job);
+  apply(override, job);
   if (fs::exists(folder) && !fs::is_directory(folder))
     throw InputError(fmt::format("{}: is a file; name a folder for the calibration", folder.string()), ExitCode::usage);
   if (fs::exists(folder / manifest_name)) {
     const Json manifest = read_manifest(folder);
-    if (manifest.at("job") != job.identity())
+    if (manifest.at("job") != identity(job, override.preset))
       throw InputError(fmt::format("{}: holds the calibration of another job; continue that one with `kerf resume {}`, "
                                    "or name another folder",
                                    folder.string(), folder.string()),
@@ -114,16 +122,23 @@ Folder Folder::create(const fs::path& folder, const fs::path& job_file, const Bu
   if (!fs::exists(folder / manifest_name) && !journal->lines().empty())
     throw InputError(
         fmt::format("{}: holds a journal without {}; name another folder", folder.string(), manifest_name));
-  write_inputs(folder, job, code);
+  write_inputs(folder, job, override.preset, code);
   return {folder, std::move(job), std::move(journal)};
 }
 
-Folder Folder::open(const fs::path& folder, const BudgetOverride& budget, const std::string& code) {
+bool Folder::holds_one(const fs::path& folder) {
+  return fs::is_regular_file(folder / manifest_name);
+}
+
+Folder Folder::open(const fs::path& folder, const JobOverride& override, const std::string& code) {
   const Json manifest = read_manifest(folder);
   require_same_code(folder, manifest, code);
   Job job = read_copies(folder, manifest);
-  apply({manifest.at("max_runs").get<std::size_t>(), manifest.at("parallel").get<int>()}, job);
-  apply(budget, job);
+  apply({.max_runs = manifest.at("max_runs").get<std::size_t>(),
+         .parallel = manifest.at("parallel").get<int>(),
+         .preset = manifest.at("preset").get<std::string>()},
+        job);
+  apply(override, job);
   return {folder, std::move(job), open_journal(folder)};
 }
 

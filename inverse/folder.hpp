@@ -9,10 +9,11 @@
 
 namespace kerf::inverse {
 
-/// What a caller may change about a job's budget; 0 leaves it as the job says.
-struct BudgetOverride {
+/// What a caller may change about a job; 0 and empty leave it as the job says.
+struct JobOverride {
   std::size_t max_runs = 0;
   int parallel = 0;
+  std::string preset;  ///< written over the scene (see forward/scene/preset.hpp)
 };
 
 /// The folder a calibration lives in. It holds copies of all inputs, so that it can be resumed from itself alone:
@@ -24,9 +25,11 @@ class Folder {
   /// For `kerf calibrate`: creates the folder, or reopens one that holds the same job. Throws InputError when it holds
   /// another job or the runs of another build of kerf.
   static Folder create(const std::filesystem::path& folder, const std::filesystem::path& job_file,
-                       const BudgetOverride& budget, const std::string& code);
+                       const JobOverride& override, const std::string& code);
+  /// Is there a calibration in this folder?
+  static bool holds_one(const std::filesystem::path& folder);
   /// For `kerf resume`: nothing but the folder is needed. Throws InputError when its inputs were changed.
-  static Folder open(const std::filesystem::path& folder, const BudgetOverride& budget, const std::string& code);
+  static Folder open(const std::filesystem::path& folder, const JobOverride& override, const std::string& code);
 
   const Job& job() const { return job_; }
   Journal& journal() { return *journal_; }

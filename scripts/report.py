@@ -1,12 +1,13 @@
 #!/usr/bin/python3
-"""Writes the report page of a calibration or a sweep (a directory) or of one simulated cut (an .h5 file).
+"""Writes the report page of a calibration, a sweep or a study (a directory) or of one simulated cut (an .h5 file).
 
-Of a sweep also its figures, sweep.svg and sweep_intercepts.svg, beside the page.
+Of a sweep also its figures, sweep.svg and sweep_intercepts.svg, beside the page; of a study study.svg.
 
 Exit codes are Kerf's: 0 written, 1 this Python lacks a module, 2 usage, 3 the input is missing or broken.
 """
 
 import argparse
+import json
 import os
 import sys
 import tempfile
@@ -38,6 +39,16 @@ def write_atomically(file, text):
         raise
 
 
+def kind_of(directory):
+    """"sweep" or "study"; None for a calibration."""
+    if not (directory / "request.json").exists():
+        return "study" if (directory / "study.json").exists() else None
+    try:
+        return json.loads((directory / "request.json").read_text(encoding="utf-8")).get("kind")
+    except ValueError:
+        return "sweep"
+
+
 def main():
     arguments = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     arguments.add_argument("target", type=Path)
@@ -48,14 +59,22 @@ def main():
     from report.calibration_page import page_of_calibration
     from report.cut import Unreadable, read_cut
     from report.cut_page import page_of_cut
+    from report.study import estimates, read_study, work_precision
+    from report.study_page import page_of_study
     from report.sweep import extrapolations, forces, read_sweep
     from report.sweep_page import page_of_sweep
     try:
-        if options.target.is_dir() and (options.target / "request.json").exists():
-            sweep = read_sweep(options.target)
-            page = page_of_sweep(sweep)
+        if options.target.is_dir() and (kind := kind_of(options.target)):
             output = options.output or options.target / "report.html"
-            for name, picture in [("sweep.svg", forces(sweep)), ("sweep_intercepts.svg", extrapolations(sweep))]:
+            if kind == "study":
+                study = read_study(options.target)
+                picture = estimates(study) if study.of_job else work_precision(study)
+                page, pictures = page_of_study(study), [("study.svg", picture)]
+            else:
+                sweep = read_sweep(options.target)
+                page = page_of_sweep(sweep)
+                pictures = [("sweep.svg", forces(sweep)), ("sweep_intercepts.svg", extrapolations(sweep))]
+            for name, picture in pictures:
                 if picture:
                     write_atomically(output.parent / name, picture + "\n")
         elif options.target.is_dir():

@@ -168,9 +168,13 @@ std::vector<Block> declare() {
        .variant = "",
        .meaning = "the price of accuracy",
        .parameters =
-           {number("cells_through_chip", "1", 2, 64, "grid cells across the depth of cut").or_else("8"),
-            number("particles_per_cell_side", "1", 1, 4, "particles along each side of a cell").or_else("2"),
-            number("markers_per_cell", "1", 1, 32, "crack-face markers along a cell").or_else("8"),
+           {number("cells_through_chip", "1", 2, 64, "grid cells across the depth of cut")
+                .in_whole_numbers()
+                .or_else("8"),
+            number("particles_per_cell_side", "1", 1, 4, "particles along each side of a cell")
+                .in_whole_numbers()
+                .or_else("2"),
+            number("markers_per_cell", "1", 1, 32, "crack-face markers along a cell").in_whole_numbers().or_else("8"),
             number("courant_number", "1", 0.01, 0.9, "time step in transits of an elastic wave through a cell")
                 .or_else("0.6"),
             number("cell_stretch", "1", 1, 8,

@@ -9,23 +9,23 @@ namespace kerf::commands {
 void add_calibrate(CLI::App& app, int& exit_code) {
   struct Options {
     std::string job, output;
-    inverse::BudgetOverride budget;
+    inverse::JobOverride changes;
     bool json = false;
   };
   const auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("calibrate", "Find parameters of a scene from measured curves by simulation");
   command->add_option("job", options->job, "job file (TOML)")->required();
   command->add_option("-o,--output", options->output, "folder for the journal and the results")->required();
-  command->add_option("--parallel", options->budget.parallel, "simulations at a time")->check(CLI::PositiveNumber);
-  command->add_option("--max-runs", options->budget.max_runs, "simulated cuts at most")->check(CLI::PositiveNumber);
+  command->add_option("--parallel", options->changes.parallel, "simulations at a time")->check(CLI::PositiveNumber);
+  command->add_option("--max-runs", options->changes.max_runs, "simulated cuts at most")->check(CLI::PositiveNumber);
   command->add_flag("--json", options->json, "print the result as JSON");
   command->footer(
       "The folder keeps every simulated cut: a calibration that was stopped or killed goes on with `kerf resume DIR`.\n"
       "Exit code 4: not converged. 5: too many cuts failed. 6: a key parameter is not measured. 130: Ctrl-C.");
   command->callback([options, &exit_code] {
     const std::string code = inverse::code_identity();
-    inverse::Folder folder = inverse::Folder::create(options->output, options->job, options->budget, code);
-    exit_code = static_cast<int>(run_session(folder, code, options->json));
+    inverse::Folder folder = inverse::Folder::create(options->output, options->job, options->changes, code);
+    exit_code = static_cast<int>(run_session(folder, code, options->json ? Show::json : Show::table));
   });
 }
 

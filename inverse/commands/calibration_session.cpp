@@ -131,7 +131,7 @@ void print_table(const inverse::Calibration& calibration, const inverse::Calibra
              cost.wall_seconds);
 }
 
-ExitCode finish(inverse::Folder& folder, const std::string& code, bool json) {
+ExitCode finish(inverse::Folder& folder, const std::string& code, Show show) {
   const inverse::Job& job = folder.job();
   ProgressLines lines(job.budget.max_runs);
   inverse::RunDatabase database(
@@ -148,19 +148,19 @@ ExitCode finish(inverse::Folder& folder, const std::string& code, bool json) {
   write_atomically(folder.path() / "manifest.json", inverse::manifest(job, code, cost.wall_seconds).dump(2) + "\n");
   const ordered_json result = inverse::calibration_json(job, calibration, cost);
   write_atomically(folder.path() / "result.json", result.dump(2) + "\n");
-  if (json)
+  if (show == Show::json)
     fmt::print("{}\n", result.dump(2));
-  else
+  else if (show == Show::table)
     print_table(calibration, cost);
   return calibration.exit_code;
 }
 
 }  // namespace
 
-ExitCode run_session(inverse::Folder& folder, const std::string& code, bool json) {
+ExitCode run_session(inverse::Folder& folder, const std::string& code, Show show) {
   const StopOnInterrupt guard;
   try {
-    return finish(folder, code, json);
+    return finish(folder, code, show);
   } catch (const inverse::Interrupted&) {
     fmt::print(stderr, "interrupted; every finished run is kept. Continue with: kerf resume {}\n",
                folder.path().string());

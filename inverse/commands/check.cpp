@@ -6,6 +6,7 @@
 #include "data/curve.hpp"
 #include "forward/scene/scene.hpp"
 #include "inverse/commands/commands.hpp"
+#include "inverse/commands/job_study_session.hpp"
 #include "inverse/job.hpp"
 #include "models/base/document.hpp"
 #include "models/base/error.hpp"
@@ -35,11 +36,6 @@ void check_job(const std::filesystem::path& file) {
   const inverse::Job job = inverse::read_job(file);
   fmt::print("{}: ok, a job: {} ({} free parameters, {} cuts, at most {} runs)\n", file.string(), job.title,
              job.free.size(), job.cuts.size(), job.budget.max_runs);
-}
-
-/// Only a job names the scene whose parameters it looks for, or says which are free.
-bool is_job(const Document& document) {
-  return document.has("scene") || document.has("free");
 }
 
 void check(const std::filesystem::path& file) {

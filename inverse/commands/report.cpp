@@ -21,16 +21,17 @@ struct Options {
 
 void add_report(CLI::App& app, int& exit_code) {
   auto* command =
-      app.add_subcommand("report", "Write one self-contained HTML page about a calibration, a sweep or a cut");
+      app.add_subcommand("report", "Write one self-contained HTML page about a calibration, a sweep, a study or a cut");
   const auto options = std::make_shared<Options>();
-  command->add_option("target", options->target, "directory of a calibration or sweep, or the .h5 file of one cut")
+  command
+      ->add_option("target", options->target, "directory of a calibration, sweep or study, or the .h5 file of one cut")
       ->required();
   command->add_option("-o,--output", options->output, "the page (default: DIR/report.html, or OUT.html beside OUT.h5)");
   command->callback([options, &exit_code] {
     if (!fs::exists(options->target))
       throw InputError(
-          fmt::format("{}: no such file or directory; give the directory that `kerf calibrate -o` or `kerf sweep "
-                      "-o` wrote, or the file that `kerf simulate -o` wrote",
+          fmt::format("{}: no such file or directory; give the directory that `kerf calibrate -o`, `kerf sweep -o` "
+                      "or `kerf study -o` wrote, or the file that `kerf simulate -o` wrote",
                       options->target));
     exit_code = static_cast<int>(draw_report(options->target, options->output));
   });

@@ -5,6 +5,8 @@
 
 #include "inverse/commands/calibration_session.hpp"
 #include "inverse/commands/commands.hpp"
+#include "inverse/commands/job_study_session.hpp"
+#include "inverse/commands/study_session.hpp"
 #include "inverse/commands/sweep_session.hpp"
 
 namespace kerf::commands {
@@ -12,30 +14,35 @@ namespace kerf::commands {
 void add_resume(CLI::App& app, int& exit_code) {
   struct Options {
     std::string folder;
-    inverse::BudgetOverride budget;
+    inverse::JobOverride changes;
     bool json = false;
   };
   const auto options = std::make_shared<Options>();
-  auto* command = app.add_subcommand("resume", "Go on with a calibration or sweep that was stopped or killed");
-  command->add_option("folder", options->folder, "folder of the calibration or sweep")->required();
-  command->add_option("-j,--jobs,--parallel", options->budget.parallel, "simulations at a time")
+  auto* command = app.add_subcommand("resume", "Go on with a calibration, sweep or study that was stopped or killed");
+  command->add_option("folder", options->folder, "folder of the calibration, sweep or study")->required();
+  command->add_option("-j,--jobs,--parallel", options->changes.parallel, "simulations at a time")
       ->check(CLI::PositiveNumber);
-  command->add_option("--max-runs", options->budget.max_runs, "simulated cuts at most, of a calibration")
+  command->add_option("--max-runs", options->changes.max_runs, "simulated cuts at most, of a calibration")
       ->check(CLI::PositiveNumber);
   command->add_flag("--json", options->json, "print the result as JSON");
   command->footer("No finished run is repeated, and the answer is the one an undisturbed session gives, to the bit.");
   command->callback([options, &exit_code] {
     const std::string code = inverse::code_identity();
     if (const std::string kind = inverse::SceneFolder::kind_of(options->folder); !kind.empty()) {
-      if (options->budget.max_runs > 0)
+      if (options->changes.max_runs > 0)
         throw InputError(fmt::format("kerf resume: --max-runs belongs to calibrations; a {} has all its runs", kind),
                          ExitCode::usage);
-      inverse::SceneFolder folder = inverse::SceneFolder::open(options->folder, options->budget.parallel, code);
-      exit_code = static_cast<int>(run_sweep(folder, sweep_in(folder), code, options->json));
+      inverse::SceneFolder folder = inverse::SceneFolder::open(options->folder, options->changes.parallel, code);
+      exit_code = static_cast<int>(kind == "study" ? run_study(folder, study_in(folder), code, options->json)
+                                                   : run_sweep(folder, sweep_in(folder), code, options->json));
       return;
     }
-    inverse::Folder folder = inverse::Folder::open(options->folder, options->budget, code);
-    exit_code = static_cast<int>(run_session(folder, code, options->json));
+    if (holds_job_study(options->folder)) {
+      exit_code = static_cast<int>(resume_job_study(options->folder, options->changes, code, options->json));
+      return;
+    }
+    inverse::Folder folder = inverse::Folder::open(options->folder, options->changes, code);
+    exit_code = static_cast<int>(run_session(folder, code, options->json ? Show::json : Show::table));
   });
 }
 

@@ -22,11 +22,16 @@ struct Parameter {
   double upper = std::numeric_limits<double>::infinity();
   std::vector<std::string> choices;     ///< text and list: what is allowed; empty allows anything
   std::optional<std::string> fallback;  ///< what an absent key means, written as in a file; none: the key is required
-  bool optional = false;                ///< an absent key without fallback is allowed and stays absent
+  bool whole = false;     ///< numbers: only whole ones; who scales a value rounds it (the reader of the block refuses)
+  bool optional = false;  ///< an absent key without fallback is allowed and stays absent
   std::string meaning;
 
   Parameter or_else(std::string text) && {
     fallback = std::move(text);
+    return std::move(*this);
+  }
+  Parameter in_whole_numbers() && {
+    whole = true;
     return std::move(*this);
   }
   Parameter if_given() && {
