@@ -16,7 +16,7 @@ namespace {
 /// One line per knob; `kerf study` measures what each of them buys.
 const std::vector<PresetKnob> knobs{
     // path                              draft   standard  reference
-    {"resolution.cells_through_chip", {"4", "6", "10"}},
+    {"resolution.cells_through_chip", {"4", "8", "10"}},
     {"steady_state.tolerance", {"0.01", "0.005", "0.002"}},
 };
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.lines import Line2D
+from matplotlib.patheffects import withStroke
 from matplotlib.ticker import FuncFormatter, MaxNLocator, NullFormatter
 
 from .cut import Unreadable
@@ -101,6 +102,7 @@ def draw_work_precision(ax, study):
     light_grid(ax)
     ax.set_xscale("log")
     ax.set_yscale("log")
+    ax.margins(x=0.1)
     ax.set_xlabel("core-seconds")
     _draw_front(ax, study)
     base = study.as_it_is
@@ -114,13 +116,13 @@ def draw_work_precision(ax, study):
             ax.plot(*np.array(sorted(places)).T, color=colour, linewidth=1, alpha=0.55, zorder=2)
         for run in runs:
             _draw_run(ax, run, colour, "D" if preset else "o")
-            _label(ax, run, run["value"].replace("x ", "×"), colour, bold=preset)
+            _label(ax, run, run["value"].replace("x ", "×"), colour, below=preset)
     if cost := core_seconds(study.reference):
         ax.axvline(cost, color=QUIET, linewidth=0.9, linestyle=(0, (2, 2)), zorder=1)
-        ax.annotate("reference", (cost, 0), xycoords=("data", "axes fraction"), xytext=(-4, 6), rotation=90,
+        ax.annotate("reference run", (cost, 0), xycoords=("data", "axes fraction"), xytext=(-4, 6), rotation=90,
                     textcoords="offset points", ha="right", fontsize=9, color=QUIET)
     _draw_run(ax, base, INK, "s")
-    _label(ax, base, "as it is", INK, bold=True)
+    _label(ax, base, "as it is", INK)
     number = FuncFormatter(lambda value, _: f"{value:g}")
     for axis in (ax.xaxis, ax.yaxis):
         axis.set_major_formatter(number)
@@ -151,11 +153,14 @@ def _draw_run(ax, run, colour, marker):
                 markeredgewidth=1.4, elinewidth=0.9, capsize=0, alpha=1, zorder=5 if marker != "o" else 3)
 
 
-def _label(ax, run, text, colour, bold):
+def _label(ax, run, text, colour, below=False):
+    """Above to the right; presets, in bold, below to the left."""
     cost, error = core_seconds(run), _error(run)
     if cost and error:
-        ax.annotate(text, (cost, error[0]), xytext=(6, 4), textcoords="offset points", color=colour,
-                    fontsize=10.5 if bold else 9.5, fontweight="bold" if bold else "normal", zorder=6)
+        ax.annotate(text, (cost, error[0]), xytext=(-5, -15) if below else (6, 4), textcoords="offset points",
+                    ha="right" if below else "left", color=colour, fontsize=10.5 if below else 9.5,
+                    fontweight="bold" if below else "normal", zorder=6,
+                    path_effects=[withStroke(linewidth=2.5, foreground="white", alpha=0.8)])
 
 
 def _draw_front(ax, study):

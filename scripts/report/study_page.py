@@ -99,28 +99,33 @@ def _percent(estimate):
     return f"{estimate['value']:+.2f}".replace("-", "−") + (f" ± {estimate['se']:.2f}" if finite(estimate["se"]) else "")
 
 
+def _turned(run):
+    """The label in one line."""
+    return run["label"].replace("_", " ").replace("x ", "×").replace(" ", "\u00a0")
+
+
 def _runs(page, study):
     section = page.section("Every run")
     rows = []
     for run in study.runs:
         result, error = run.get("result") or {}, run.get("error")
         cost = result.get("cost") or {}
-        forces = [f"{integer(result[key]['value'])} ± {integer(result[key]['se'])}" if key in result else "–"
-                  for key in ("F_c", "F_t")]
+        force = result.get("F_c")
         verdict = run["verdict"] if run["role"] != "reference" or run["verdict"] != "accepted" else "reference"
         if error and error["front"]:
             verdict = "on the front"
-        rows.append([integer(run["run"]), run["label"].replace("_", " ").replace("x ", "× "), *forces,
+        rows.append([_turned(run), f"{integer(force['value'])} ± {integer(force['se'])}" if force else "–",
                      _percent(error["F_c"]) if error else "–", _percent(error["F_t"]) if error else "–",
                      number(cost.get("processor_s"), digits=3),
                      f"{cost['particle_steps'] / 1e6:.0f}" if finite(cost.get("particle_steps")) else "–",
                      chip(verdict, {"refused": "no", "not run": "bounded"}.get(verdict, ""))])
-    section.table(["run", "what is turned", prose("F_c, N/m"), prose("F_t, N/m"), html("Δ{}, %", prose("F_c")),
-                   html("Δ{}, % of {}", prose("F_t"), prose("F_c")), "core-s", "10⁶ p.-steps", "verdict"], rows,
-                  numeric=(0, 2, 3, 4, 5, 6, 7))
-    section.text(html("Δ is the difference to the reference run, ± one standard error of both runs together. A "
-                      "particle-step is one particle moved by one time step: the same cost, whatever the machine does."))
-    section.warnings([html("Run {} ({}): {}", run["run"], run["label"], prose("; ".join(run["refusals"])))
+    section.table(["what is turned", prose("F_c, N/m"), html("Δ{}, %", prose("F_c")),
+                   html("Δ{}, %", prose("F_t")), "core-s", "10⁶ p.-steps", "verdict"], rows,
+                  numeric=range(1, 6))
+    section.text(html("Δ is the difference to the reference run in shares of its {}, ± one standard error of both runs "
+                      "together. A particle-step is one particle moved by one time step: the same cost, whatever the "
+                      "machine does.", prose("F_c")))
+    section.warnings([html("{}: {}", _turned(run), prose("; ".join(run["refusals"])))
                       for run in study.runs if run["refusals"]])
 
 
