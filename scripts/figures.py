@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""Draws the README's figures of the virtual experiments from the sweeps' tables.
+"""Draws the README's figures of the virtual experiments from the tables of sweeps and studies.
 
-Usage: scripts/figures.py RESULTS OUTPUT     RESULTS/NAME/sweep.csv as scripts/virtual_experiments.sh leaves them
+Usage: scripts/figures.py RESULTS OUTPUT     RESULTS/NAME as scripts/virtual_experiments.sh leaves them
 """
 
 import csv
@@ -15,6 +15,7 @@ sys.path.insert(0, str(ROOT / "scripts"))
 import numpy as np  # noqa: E402
 from matplotlib.patches import Polygon  # noqa: E402
 from report.cut import read_cut, tool_outlines  # noqa: E402
+from report.study import draw_work_precision, legend_of, read_study  # noqa: E402
 from report.style import ACCENT, INK, QUIET, SAND, STRAIN, WARM, figure, light_grid  # noqa: E402
 
 # What the paper prints (Nairn 2016): forces in J/m^2 against depth in mm for a chip breaker and a mouth of 1.2 mm.
@@ -241,12 +242,32 @@ def chips(results):
     return fig
 
 
-FIGURES = {"plane_chips": chips, "talk_forces": talk, "talk_effects": effects, "bottom_force": bottom, "wood_forces": wood, "plane_forces": plane}
+def work_precision(results):
+    """Error against cost, one knob at a time, of the studies that were run."""
+    titles = {"study_polymer": "polymer, verification_45", "study_wood": "wood, wood_rl"}
+    studies = {name: read_study(results / name) for name in titles if (results / name / "study.json").exists()}
+    fig, axes = figure(140 + 420 * max(len(studies), 1.4), 430, 1, len(studies), sharey=True, squeeze=False)
+    for ax, (name, study) in zip(axes[0], studies.items()):
+        draw_work_precision(ax, study)
+        ax.set_title(titles[name])
+    axes[0][0].set_ylabel("error of the force, % of F_c")
+    axes[0][-1].legend(handles=legend_of(studies.values()), loc="upper left", bbox_to_anchor=(1.02, 1), borderaxespad=0,
+                       fontsize=10.5)
+    return fig
+
+
+# A figure and a folder without which it cannot be drawn.
+FIGURES = {"plane_chips": (chips, "plane_mouth"), "talk_forces": (talk, "talk"), "talk_effects": (effects, "talk_rake"),
+           "bottom_force": (bottom, "talk_edge"), "wood_forces": (wood, "wood_rl"), "plane_forces": (plane, "plane_m12"),
+           "work_precision": (work_precision, "study_polymer")}
 
 
 def main():
     results, output = Path(sys.argv[1]), Path(sys.argv[2])
-    for name, draw in FIGURES.items():
+    for name, (draw, needed) in FIGURES.items():
+        if not (results / needed).exists():
+            print(f"{name}: left as it is, there is no {results / needed}", file=sys.stderr)
+            continue
         fig = draw(results)
         file = output / f"{name}.png"
         fig.savefig(file, dpi=110, facecolor="white")

@@ -1,19 +1,22 @@
 #!/usr/bin/env bash
-# The virtual experiments of the talk (2013) and of the bench plane (2016), one sweep each, and the README's figures of
-# them. Under an hour on two cores; resumable: what was simulated before is taken from results/experiments.
-# Usage: scripts/virtual_experiments.sh [NAME...]     only these sweeps
+# The virtual experiments of the talk (2013) and of the bench plane (2016), one sweep each, the studies of what accuracy
+# costs, and the README's figures of them. About an hour on two cores; resumable: what was simulated before is taken from
+# results/experiments.
+# Usage: scripts/virtual_experiments.sh [NAME...]     only these
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 scenes=data/scenes
 wanted=("$@")
-sweep() {  # NAME SCENE AXES...
-  local name=$1 scene=$2
+experiment() {  # COMMAND NAME SCENE ARGUMENTS...
+  local name=$2
   [[ ${#wanted[@]} -eq 0 || " ${wanted[*]} " == *" $name "* ]] || return 0
   echo "== $name"
   # 4: some runs were refused, and the table says why.
-  build/release/kerf sweep "$scenes/$scene.toml" "${@:3}" -o "results/experiments/$name" || [[ $? -eq 4 ]]
+  build/release/kerf "$1" "$scenes/$3.toml" "${@:4}" -o "results/experiments/$name" || [[ $? -eq 4 ]]
 }
+sweep() { experiment sweep "$@"; }
+study() { experiment study "$@"; }
 
 strength=cohesive.mode_I.strength+cohesive.mode_II.strength
 toughness=cohesive.mode_I.toughness+cohesive.mode_II.toughness
@@ -35,5 +38,11 @@ sweep plane_mouth plane_breaker sole.opening_in_depths=12,4,2,1.5 steady_state.n
 sweep plane_tip plane_breaker tool.tip_radius=0,0.12,0.24,0.48mm steady_state.not_before=16 cut.travel=28
 sweep plane_angle plane_breaker chip_breaker.angle=0,-10,-20deg steady_state.not_before=16 cut.travel=28
 sweep plane_bevel plane_breaker tool.bevel=25,35,44deg steady_state.not_before=16 cut.travel=28
+
+# What accuracy costs; the presets were chosen from these. The wood's forces swing by more than most knobs are worth.
+study study_polymer verification_45
+study study_wood wood_rl resolution.cells_through_chip=x0.75,x1.25,x1.5 cut.speed=x2,x4 resolution.courant_number=x1.25 \
+  pic_damping.rate=x0,x4 window.ahead+window.behind+window.below+window.above=x0.75 resolution.cell_stretch=3 \
+  steady_state.not_before=x0.5 preset=draft --reference preset=standard
 
 scripts/figures.py results/experiments data/figures
