@@ -92,6 +92,7 @@ struct CutResult {
   double lost_length = 0;            ///< mm of crack path that left the window with bonds that still held
   double room_ahead = 0;             ///< mm of window ahead of the foremost bond past its peak
   double edge_share = 0;             ///< of the normal forces, near the edges where the window cuts the chip
+  double inertia_share = 0;          ///< rho d v^2 / F_c: of the force, what it takes to set the chip in motion
   bool steady = false;
   double steady_from = 0;  ///< tool travel, mm
   bool accepted = false;

@@ -12,6 +12,9 @@ namespace {
 // verification polymer: half the force at 0.24 cells per critical opening).
 constexpr double smallest_opening = 0.35;
 
+// The tool is faster than in the experiment, for time; the force of inertia grows with the square of its speed.
+constexpr double largest_inertia = 0.05;
+
 /// The energy release rate is read twice, at the grips and at the notch: a specimen that was pulled slowly enough has
 /// one value.
 template <class Refuse>
@@ -72,6 +75,10 @@ void judge(CutResult& result, const Scene& scene) {
         fmt::format("{:.1f} % of the tool's normal forces act where the window cuts the chip (allowed 2 %): raise "
                     "window.behind, window.above or window.zone",
                     100 * result.edge_share));
+  if (!(result.inertia_share < largest_inertia))
+    refuse(
+        fmt::format("setting the chip in motion takes {:.1f} % of the cutting force (allowed {:g} %): lower cut.speed",
+                    100 * result.inertia_share, 100 * largest_inertia));
   if (!result.steady)
     refuse("no steady force: the two halves of the record differ by more than 1 % and their own scatter, or by 3 %");
   if (!(result.deepest_penetration < 0.25))

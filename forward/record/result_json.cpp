@@ -114,6 +114,7 @@ Json result_json(const CutResult& result) {
   if (result.is_specimen) json["r_curve"] = r_curve(result.history);
   json["ledger"] = energies(result.ledger);
   json["deepest_penetration"] = finite_or_null(result.deepest_penetration);
+  json["inertia_share"] = finite_or_null(result.inertia_share);
   json["cost"] = cost_of(result.cost);
   json["units"] = {{"steady_from", "mm"},    {"crack_lead", "mm"},   {"crack_lead_se", "mm"},
                    {"softening_lead", "mm"}, {"process_zone", "mm"}, {"deepest_penetration", "cells"}};

@@ -78,10 +78,10 @@ struct J2 {
     // No curve softens: where none of the eight has reached the first yield stress, there is nothing to return.
     if (!any(square > hardening.yield_stress * hardening.yield_stress)) return true;
 
-    const Lanes q = sqrt(square);
+    const Lanes inverse_q = inverse_sqrt(square + 1e-300), q = square * inverse_q;
     Lanes x{};
     const bool converged = return_to_yield(q, tau.plastic_strain, x);
-    const Lanes keep = 1.0 - 3.0 * G * x / (q + 1e-300);
+    const Lanes keep = 1.0 - 3.0 * G * x * inverse_q;
     tau.xx = mean + keep * sxx;
     tau.yy = mean + keep * syy;
     tau.zz = mean + keep * szz;

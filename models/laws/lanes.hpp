@@ -45,7 +45,13 @@ Lanes each_lane(Lanes v, Function&& f) {
 inline Lanes sqrt(Lanes v) {
   return _mm512_maskz_sqrt_pd(0xFF, v);  // GCC 12 warns falsely about the plain one
 }
-/// 1/sqrt(v) to the last digit or two, in a third of the time of the two operations.
+/// 1/v and 1/sqrt(v) of normal numbers to the last digit or two: the machine's estimate and two steps of Newton's take a
+/// third of the time of division and root.
+inline Lanes reciprocal(Lanes v) {
+  Lanes y = _mm512_maskz_rcp14_pd(0xFF, v);
+  y += y * (1.0 - v * y);
+  return y + y * (1.0 - v * y);
+}
 inline Lanes inverse_sqrt(Lanes v) {
   Lanes y = _mm512_maskz_rsqrt14_pd(0xFF, v);
   y *= 1.5 - 0.5 * v * y * y;
@@ -57,6 +63,9 @@ inline bool any(LaneMask mask) {
 #else
 inline Lanes sqrt(Lanes v) {
   return each_lane(v, [](double x) { return std::sqrt(x); });
+}
+inline Lanes reciprocal(Lanes v) {
+  return 1.0 / v;
 }
 inline Lanes inverse_sqrt(Lanes v) {
   return 1.0 / sqrt(v);

@@ -28,7 +28,7 @@ struct StepRotation {
 };
 inline StepRotation step_rotation(Lanes l_xy, Lanes l_yx) {
   const Lanes half_spin = 0.25 * (l_yx - l_xy);
-  const Lanes scale = 1.0 / (1.0 + half_spin * half_spin);
+  const Lanes scale = reciprocal(1.0 + half_spin * half_spin);
   return {.c = (1.0 - half_spin * half_spin) * scale, .s = 2.0 * half_spin * scale};
 }
 

@@ -24,9 +24,9 @@ TEST(ResultJson, ConvertsForcesToNewtonPerMetreAndEnergiesToJoulePerMetre) {
 
 TEST(ResultJson, HoldsEveryPromisedKey) {
   const auto json = result_json(sample_cut());
-  for (const char* key :
-       {"F_c", "F_t", "steady", "steady_from", "accepted", "refusals", "branch", "crack_lead", "mode_I_fraction",
-        "fracture_energy_ratio", "chip_ratio", "curl_radius", "faces", "ledger", "deepest_penetration", "cost"})
+  for (const char* key : {"F_c", "F_t", "steady", "steady_from", "accepted", "refusals", "branch", "crack_lead",
+                          "mode_I_fraction", "fracture_energy_ratio", "chip_ratio", "curl_radius", "faces", "ledger",
+                          "deepest_penetration", "inertia_share", "cost"})
     EXPECT_TRUE(json.contains(key)) << key;
   for (const char* key : {"tool_work", "fracture", "plastic", "elastic", "kinetic", "friction", "damping", "residue"})
     EXPECT_TRUE(json["ledger"].contains(key)) << key;

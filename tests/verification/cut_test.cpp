@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -182,6 +183,15 @@ TEST(Acceptance, RefusesAGridTooCoarseForTheCohesiveLaw) {
   EXPECT_FALSE(result.accepted);
   ASSERT_FALSE(result.refusals.empty());
   EXPECT_NE(result.refusals.front().find("too coarse"), std::string::npos);
+}
+
+TEST(Acceptance, RefusesAToolThatIsTooFastForAQuasiStaticForce) {
+  // rho d v^2 = 1e-9 t/mm^3 * 0.5 mm * (40 m/s)^2 = 0.8 N/mm, of about 8 N/mm.
+  const CutResult result =
+      run(shipped("verification_45", {{"cut.speed", 40e3}, {"resolution.cells_through_chip", 4}, {"cut.travel", 6}}));
+  EXPECT_NEAR(result.inertia_share, 0.8 / result.F_c.value, 1e-9);
+  EXPECT_TRUE(std::any_of(result.refusals.begin(), result.refusals.end(),
+                          [](const std::string& reason) { return reason.find("in motion") != std::string::npos; }));
 }
 
 TEST(Acceptance, AStoppedRunIsAValueThatSaysSo) {
