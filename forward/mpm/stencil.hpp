@@ -82,7 +82,8 @@ struct Stencil {
 
   /// `so_far`, with a one for each particle whose nodes do not all exist (or whose position is not a number).
   Lanes outside(Lanes so_far) const {
-    const auto holds = (f_x >= 0.5) & (f_x < 1.5) & (f_y >= 0.5) & (f_y < 1.5);
+    // Half a cell to either side, with room for rounding.
+    const auto holds = (f_x > 0.49) & (f_x < 1.51) & (f_y > 0.49) & (f_y < 1.51);
     return holds ? so_far : Lanes{} + 1.0;
   }
 

@@ -28,8 +28,8 @@ void gather_momentum(State& state) {
   const Particles& p = state.particles;
   for (int side = 0; side < 2; ++side) {
     VelocityField& field = state.grid.side[static_cast<std::size_t>(side)];
-    clear(field.mass);
-    clear(field.momentum);
+    // Everything, because the spans may have left some nodes.
+    for (auto* values : {&field.mass, &field.momentum, &field.velocity, &field.change, &field.force}) clear(*values);
   }
   for (std::size_t side = 0; side < 2; ++side)
     for (std::size_t i = p.begin[side]; i < p.begin[side + 1]; i += lane_count)

@@ -36,6 +36,10 @@ void judge_specimen(const CutResult& result, Refuse&& refuse) {
 
 void judge(CutResult& result, const Scene& scene) {
   const auto refuse = [&](std::string reason) { result.refusals.push_back(std::move(reason)); };
+  if (result.history.empty()) {  // it broke down at once, and says so
+    result.accepted = false;
+    return;
+  }
 
   const double opening =
       std::min(scene.cohesive.mode_I->critical_opening(), scene.cohesive.mode_II->critical_opening());

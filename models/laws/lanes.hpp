@@ -45,8 +45,8 @@ Lanes each_lane(Lanes v, Function&& f) {
 inline Lanes sqrt(Lanes v) {
   return _mm512_maskz_sqrt_pd(0xFF, v);  // GCC 12 warns falsely about the plain one
 }
-/// 1/v and 1/sqrt(v) of normal numbers to the last digit or two: the machine's estimate and two steps of Newton's take a
-/// third of the time of division and root.
+/// 1/v and 1/sqrt(v) of normal numbers to the last digit or two: the machine's estimate and two steps of Newton's take
+/// a third of the time of division and root.
 inline Lanes reciprocal(Lanes v) {
   Lanes y = _mm512_maskz_rcp14_pd(0xFF, v);
   y += y * (1.0 - v * y);

@@ -46,13 +46,12 @@ NodalForces forces_so_far(State& state) {
 
 /// Work on the grid in this step, with the velocity that strained the particles and moved the markers and the mean of
 /// the forces before and after that.
-double work(const State& state, const NodalForces& before, const NodalForces& after) {
+double work(const State& state, const NodalForces& before, const NodalForces& after,
+            const std::array<std::vector<double>, 2>& velocity) {
   double sum = 0.0;
-  for (std::size_t side = 0; side < 2; ++side) {
-    const std::vector<double>& velocity = state.grid.side[side].velocity;
+  for (std::size_t side = 0; side < 2; ++side)
     for (std::size_t k = 0; k < 2 * state.grid.nodes(); ++k)
-      sum += 0.5 * (before[side][k] + after[side][k]) * velocity[k];
-  }
+      sum += 0.5 * (before[side][k] + after[side][k]) * velocity[side][k];
   return state.step * sum;
 }
 
@@ -133,13 +132,15 @@ Losses cut(const Scene& scene) {
     std::array<NodalForces, part_count> now;
     now.fill({none, none});
     NodalForces so_far{none, none};
-    bool acting = false;  // between the first forces and their spreading
+    std::array<std::vector<double>, 2> velocity;  // projected
+    bool acting = false;                          // between the first forces and their spreading
     for (const Stage& stage : stages) {
       const std::vector<double> force_x = state.crack.face[above].force_x, force_y = state.crack.face[above].force_y;
       stage.apply(state);
       if (stage.name == "rake face") stiffening.follow(state, force_x, force_y);
       const Part part = part_of(stage.name);
       book(part);
+      if (stage.name == "project") velocity = {state.grid.side[0].velocity, state.grid.side[1].velocity};
       if (stage.name == "stress") acting = true;
       if (stage.name == "spread") acting = false;
       if (!acting) continue;
@@ -149,7 +150,7 @@ Losses cut(const Scene& scene) {
       so_far = std::move(all);
     }
     for (const Part part : {stress, contact, cohesion}) {
-      const double passed_on = work(state, last[part], now[part]);
+      const double passed_on = work(state, last[part], now[part], velocity);
       losses.part[part] -= passed_on;
       losses.part[transfer] += passed_on;
     }
