@@ -32,7 +32,7 @@ def line(case, result):
     verdict = "accepted, " + result["branch"] if result["accepted"] else "refused: " + result["refusals"][0]
     return (f"{case['case']:<36}{force['value']:>8.0f} ±{force['se'] or float('nan'):>4.0f}"
             f"{100 * ledger['residue'] / ledger['tool_work']:>9.2f}"
-            f"{result['fracture_energy_ratio']:>8.3f}{result['mode_I_fraction']:>8.2f}{result['cost']['wall_s']:>8.1f}   {verdict}")
+            f"{result['fracture_energy_ratio']:>8.3f}{result['mode_I_fraction']:>8.2f}{result['cost']['processor_s']:>8.1f}   {verdict}")
 
 
 def main():
