@@ -4,6 +4,7 @@
 #include <string>
 
 #include "data/curve.hpp"
+#include "forward/bodies/scene.hpp"
 #include "forward/scene/scene.hpp"
 #include "inverse/commands/commands.hpp"
 #include "inverse/commands/job_study_session.hpp"
@@ -26,6 +27,12 @@ void check_curve(const std::filesystem::path& file) {
 }
 
 void check_scene(const Document& document) {
+  if (forward::bodies::has_bodies(document)) {
+    const forward::bodies::Scene scene = forward::bodies::read_scene(document);
+    fmt::print("{}: ok, an experiment on {} bod{}: {}\n", document.name(), scene.bodies.size(),
+               scene.bodies.size() == 1 ? "y" : "ies", scene.title);
+    return;
+  }
   const forward::Scene scene = forward::read_scene(document);
   const auto preset = document.text_at("preset");
   fmt::print("{}: ok, a scene: {}{}\n", document.name(), scene.title,

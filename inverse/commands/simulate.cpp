@@ -11,6 +11,7 @@
 #include <system_error>
 #include <vector>
 
+#include "forward/bodies/run.hpp"
 #include "forward/record/cut_file.hpp"
 #include "forward/record/result_json.hpp"
 #include "forward/run.hpp"
@@ -18,6 +19,7 @@
 #include "inverse/commands/commands.hpp"
 #include "inverse/commands/interrupt.hpp"
 #include "inverse/sweep_axis.hpp"
+#include "models/base/atomic_file.hpp"
 #include "models/base/error.hpp"
 #include "models/base/units.hpp"
 
@@ -51,13 +53,13 @@ class ProgressLine {
 };
 
 /// Refuses, before hours are spent, a place where the result could not be put afterwards.
-void require_writable(const fs::path& h5) {
+void require_writable(const fs::path& file, const char* extension = ".h5") {
   const auto refuse = [&](const std::string& why) {
-    throw InputError(fmt::format("{}: {}", h5.string(), why), ExitCode::usage);
+    throw InputError(fmt::format("{}: {}", file.string(), why), ExitCode::usage);
   };
-  if (h5.extension() != ".h5") refuse("the name of a cut's file ends in .h5");
-  if (fs::is_directory(h5)) refuse("is a directory; name a file to write");
-  fs::path parent = fs::absolute(h5).parent_path();
+  if (file.extension() != extension) refuse(fmt::format("the name of the result's file ends in {}", extension));
+  if (fs::is_directory(file)) refuse("is a directory; name a file to write");
+  fs::path parent = fs::absolute(file).parent_path();
   while (!fs::exists(parent)) parent = parent.parent_path();
   if (!fs::is_directory(parent)) refuse(parent.string() + " is not a directory");
   if (::access(parent.c_str(), W_OK | X_OK) != 0) {
@@ -133,8 +135,38 @@ struct Options {
   bool json = false;
 };
 
+/// An experiment on bodies instead of a cut.
+ExitCode simulate_bodies(const Options& options, Document document) {
+  if (!options.preset.empty()) throw InputError("--preset is about cuts; this scene holds bodies", ExitCode::usage);
+  inverse::apply_settings(options.settings, document, forward::bodies::scene_blocks(), "kerf simulate --set");
+  const forward::bodies::Scene scene = forward::bodies::read_scene(document);
+  if (!options.output.empty()) require_writable(options.output, ".json");
+  const StopOnInterrupt guard;
+  const bool terminal = ::isatty(STDERR_FILENO) != 0;
+  const forward::bodies::BodiesResult result = forward::bodies::run(scene, [&](std::size_t stroke, double stretch) {
+    if (terminal)
+      fmt::print(stderr, "\r\033[Kstroke {} of {}, stretch {:.4f}", stroke + 1, scene.strokes.size(), stretch);
+    return !StopOnInterrupt::asked();
+  });
+  if (terminal) fmt::print(stderr, "\r\033[K");
+  const nlohmann::ordered_json json = forward::bodies::result_json(result);
+  if (!options.output.empty()) write_atomically(options.output, json.dump(2) + "\n");
+  if (options.json) {
+    fmt::print("{}\n", json.dump(2));
+  } else {
+    for (const auto& [name, value] : result.measures.items())
+      fmt::print("{:<46}{:>14.6g}\n", name, value.get<double>());
+    fmt::print("\n{:.1f} s, {} steps, {} particles\n", result.wall_seconds, result.steps, result.particles);
+  }
+  std::fflush(stdout);
+  fmt::print(stderr, "{}\n", result.accepted ? "accepted" : "not accepted: " + joined(result.refusals));
+  if (StopOnInterrupt::asked()) return ExitCode::interrupted;
+  return result.accepted ? ExitCode::success : ExitCode::not_converged;
+}
+
 ExitCode simulate(const Options& options) {
   Document document = Document::load(options.scene);
+  if (forward::bodies::has_bodies(document)) return simulate_bodies(options, std::move(document));
   if (!options.preset.empty()) forward::impose_preset(document, options.preset, "kerf simulate --preset");
   inverse::apply_settings(options.settings, document, forward::scene_blocks(), "kerf simulate --set");
   const forward::Scene scene = forward::read_scene(document);

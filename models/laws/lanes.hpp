@@ -35,7 +35,7 @@ inline double sum(Lanes v) {
 /// f of each lane by itself, for functions that have no SIMD form.
 template <class Function>
 Lanes each_lane(Lanes v, Function&& f) {
-  Lanes result;
+  Lanes result{};
   for (std::size_t i = 0; i < lane_count; ++i) result[i] = f(v[i]);
   return result;
 }

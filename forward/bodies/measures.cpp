@@ -1,0 +1,193 @@
+#include "forward/bodies/measures.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kerf::forward::bodies {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// The readings of a stroke, from the end of the one before.
+struct Span {
+  std::size_t first, last;
+};
+Span span_of(const BodiesResult& result, std::size_t stroke) {
+  return {stroke == 0 ? 0 : result.stroke_ends[stroke - 1], result.stroke_ends[stroke]};
+}
+
+double change(const BodiesResult& result, std::size_t stroke, double Reading::*of) {
+  const Span span = span_of(result, stroke);
+  return result.history[span.last].*of - result.history[span.first].*of;
+}
+
+void cycle(const BodiesResult& result, const Scene& scene, Json& json) {
+  double hot = 0, cold = 1e300;
+  for (const Stroke& stroke : scene.strokes)
+    if (stroke.heat == Heat::isothermal) {
+      hot = std::max(hot, stroke.temperature);
+      cold = std::min(cold, stroke.temperature);
+    }
+  double taken = 0, entropy = 0, hot_entropy = 0;
+  for (std::size_t s = 0; s < scene.strokes.size(); ++s) {
+    if (scene.strokes[s].heat != Heat::isothermal) continue;
+    const double heat = change(result, s, &Reading::heat), from = change(result, s, &Reading::bath_entropy);
+    entropy += from;
+    if (scene.strokes[s].temperature < hot) continue;
+    taken += heat;
+    hot_entropy += from;
+  }
+  const Reading& end = result.history.back();
+  json["efficiency"] = -end.piston_work / taken;
+  json["carnot_efficiency"] = 1.0 - cold / hot;
+  json["net_entropy_ratio"] = std::abs(entropy / hot_entropy);
+  json["closing_temperature_error"] = end.temperature / result.history.front().temperature - 1.0;
+  json["closing_length_error"] = end.length / scene.length - 1.0;
+  json["heat_taken"] = taken;
+  json["work_given"] = -end.piston_work;
+  const auto* gas = std::get_if<laws::IdealGas>(&scene.bodies.front().law);
+  if (!gas || scene.bodies.size() != 1) return;
+  double worst = 0;
+  for (std::size_t s = 0; s < scene.strokes.size(); ++s) {
+    if (scene.strokes[s].heat != Heat::adiabatic) continue;
+    const Span span = span_of(result, s);
+    const auto invariant = [&](const Reading& r) {
+      // p V^gamma with p V = -tau.
+      return -r.stress_xx * std::pow(r.length / scene.length, gas->heat_ratio - 1.0);
+    };
+    const double start = invariant(result.history[span.first]);
+    for (std::size_t i = span.first; i <= span.last; ++i)
+      worst = std::max(worst, std::abs(invariant(result.history[i]) / start - 1.0));
+  }
+  json["pv_gamma_error"] = worst;
+}
+
+void expansion(const BodiesResult& result, const Scene&, Json& json) {
+  json["first_step_temperature_change"] = result.first_step_temperature_change;
+  double least = 1e300, most = 0;
+  for (const Reading& r : result.history) {
+    least = std::min(least, r.temperature);
+    most = std::max(most, r.temperature);
+  }
+  json["lowest_temperature"] = least;
+  json["highest_temperature"] = most;
+}
+
+template <class Function>
+double slope_of(const Function& f, double at) {
+  constexpr double step = 1e-5;
+  return (f(at + step) - f(at - step)) / (2 * step);
+}
+
+/// Mean nominal stress at a stretch that the stroke passes, between readings.
+double nominal_stress(const BodiesResult& result, std::size_t stroke, double stretch) {
+  const Span span = span_of(result, stroke);
+  const double length = stretch * result.history.front().length;
+  std::size_t i = span.first + 1;
+  while (i < span.last && result.history[i].length < length) ++i;
+  const Reading &a = result.history[i - 1], &b = result.history[i];
+  const auto nominal = [&](const Reading& r) { return r.stress_xx * result.history.front().length / r.length; };
+  const double t = (length - a.length) / (b.length - a.length);
+  return nominal(a) + t * (nominal(b) - nominal(a));
+}
+
+void rubber(const BodiesResult& result, const Scene& scene, Json& json) {
+  const auto* law = std::get_if<laws::IdealRubber>(&scene.bodies.front().law);
+  if (!law) return;
+  json["heat_over_work"] = -change(result, 0, &Reading::heat) / change(result, 0, &Reading::piston_work);
+  json["entropy_over_heat"] =
+      change(result, 0, &Reading::entropy) * scene.strokes[0].temperature / change(result, 0, &Reading::heat);
+  for (std::size_t s = 0; s < scene.strokes.size(); ++s) {
+    if (scene.strokes[s].heat != Heat::adiabatic) continue;
+    const Span span = span_of(result, s);
+    const Reading &begin = result.history[span.first], &end = result.history[span.last];
+    // w of an incompressible strip pulled by lambda, and its nominal stress dw/dlambda at T_0.
+    const auto w = [&](double lambda) {
+      return law->thin ? law->C_1 * (lambda * lambda + 2.0 / lambda - 3.0) +
+                             law->C_2 * (2.0 * lambda + 1.0 / (lambda * lambda) - 3.0)
+                       : (law->C_1 + law->C_2) * (lambda * lambda + 1.0 / (lambda * lambda) - 2.0);
+    };
+    const double c = law->heat_capacity();
+    const double from = begin.length / scene.length, to = end.length / scene.length;
+    const double expected = begin.temperature * std::exp((w(to) - w(from)) / (c * law->reference));
+    json["adiabatic_temperature_rise"] = end.temperature - begin.temperature;
+    json["adiabatic_temperature_error"] =
+        std::abs((end.temperature - begin.temperature) / (expected - begin.temperature) - 1.0);
+    // Chords over the second half of the stretch, adiabatic over isothermal: of the simulated curves, and of
+    // P = T/T_0 dw/dlambda.
+    const double middle = 0.5 * (from + to);
+    const double simulated_chord = nominal_stress(result, s, to) - nominal_stress(result, s, middle);
+    const double isothermal_chord = nominal_stress(result, 0, to) - nominal_stress(result, 0, middle);
+    json["adiabatic_over_isothermal_modulus"] = simulated_chord / isothermal_chord;
+    const auto adiabatic = [&](double lambda) {
+      return begin.temperature * std::exp((w(lambda) - w(from)) / (c * law->reference)) * slope_of(w, lambda);
+    };
+    const double bath = scene.strokes[0].temperature;
+    json["adiabatic_over_isothermal_modulus_closed_form"] =
+        (adiabatic(to) - adiabatic(middle)) / (bath * (slope_of(w, to) - slope_of(w, middle)));
+    return;
+  }
+}
+
+/// Young's modulus along x of a law under the box's conditions (plane strain, free or held across): what a uniform bar
+/// would show. Only isotropic elastic bodies know it.
+double bar_modulus(const laws::BodyLaw& law, bool held_across) {
+  return std::visit(
+      [&](const auto& body) {
+        if constexpr (requires { body.law.lame(); })
+          return held_across ? body.law.lame() + 2.0 * body.law.shear_modulus() : body.law.plane_strain_modulus();
+        else
+          return std::nan("");
+      },
+      law);
+}
+
+void modulus(const BodiesResult& result, const Scene& scene, Json& json) {
+  // Mean over the last half of the last stroke, in which the waves of the loading have died away.
+  const Span span = span_of(result, scene.strokes.size() - 1);
+  const double middle = 0.5 * (result.history[span.first].time + result.history[span.last].time);
+  double impulse = 0, duration = 0;
+  for (std::size_t i = span.first + 1; i <= span.last; ++i) {
+    if (result.history[i].time < middle) continue;
+    const double step = result.history[i].time - result.history[i - 1].time;
+    impulse += result.history[i].force * step;
+    duration += step;
+  }
+  const double stress = impulse / duration / scene.height;
+  const double strain = result.history.back().length / scene.length - 1.0;
+  json["effective_modulus"] = stress / strain;
+  const bool held = scene.walls[top] == Wall::roller && scene.walls[bottom] == Wall::roller;
+  double compliance = 0;
+  for (const BodyPlan& body : scene.bodies) compliance += body.width / scene.length / bar_modulus(body.law, held);
+  json["perfect_modulus"] = 1.0 / compliance;
+  if (scene.interface) {
+    const double D = strain < 0.0 ? scene.interface->compressive : scene.interface->normal;
+    compliance += 1.0 / (D * scene.length);
+    json["interface_stiffness"] = D;
+  }
+  json["closed_form_modulus"] = 1.0 / compliance;
+  json["effective_modulus_error"] = std::abs(stress / strain * compliance - 1.0);
+}
+
+}  // namespace
+
+Json measure(const BodiesResult& result, const Scene& scene) {
+  Json json = Json::object();
+  for (const Measure what : scene.measures) switch (what) {
+      case Measure::cycle:
+        cycle(result, scene, json);
+        break;
+      case Measure::expansion:
+        expansion(result, scene, json);
+        break;
+      case Measure::rubber:
+        rubber(result, scene, json);
+        break;
+      case Measure::modulus:
+        modulus(result, scene, json);
+        break;
+    }
+  return json;
+}
+
+}  // namespace kerf::forward::bodies

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "forward/bodies/run.hpp"
+
+namespace kerf::forward::bodies {
+
+/// What the scene asks to be read off its run, name to number. `measures` in the scene names them:
+/// - cycle: four strokes, isothermal and adiabatic in turn. efficiency (work given off over heat taken in at the hotter
+///   bath), carnot_efficiency 1 - T_c/T_h, net_entropy_ratio |Q_h/T_h + Q_c/T_c| / |Q_h/T_h|, closing_temperature_error
+///   (temperature at the end over T_h, less one); of one ideal gas also pv_gamma_error, the largest relative departure
+///   of p V^gamma from its value at the start of an adiabatic stroke
+/// - expansion: first_step_temperature_change, K, and what the law says, -gamma_0 T dJ, of one Mie-Grueneisen body
+/// - rubber: of one ideal rubber, stroke 1 isothermal: heat_over_work, heat given off over work taken in (1: dq = -dw);
+///   first adiabatic stroke: adiabatic_temperature_error against T exp((w - w_0)/(c T_0)) of an incompressible strip,
+///   and adiabatic_over_isothermal_modulus, chords over its second half, with the closed form beside it
+/// - modulus: effective_modulus along x of what lies in the box, and effective_modulus_error against bodies and
+///   interface in series, 1/E = sum (l_i/L)/E_i + 1/(D_n L)
+nlohmann::ordered_json measure(const BodiesResult& result, const Scene& scene);
+
+}  // namespace kerf::forward::bodies

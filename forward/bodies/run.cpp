@@ -1,0 +1,194 @@
+#include "forward/bodies/run.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "forward/bodies/measures.hpp"
+#include "forward/bodies/step.hpp"
+
+namespace kerf::forward::bodies {
+namespace {
+
+constexpr double readings_per_length = 200;   // of the box at the start
+constexpr int steps_between_time_steps = 16;  // the stable step is looked for again so often
+
+/// Is the stroke over? `before` and `now` are the last two looks at the bodies.
+class StrokeEnd {
+ public:
+  StrokeEnd(const Stroke& stroke, double start_time, double first_length, double start_entropy)
+      : stroke_(stroke), start_time_(start_time), first_length_(first_length), start_entropy_(start_entropy) {}
+
+  bool reached(const State& state) {
+    if (state.time - start_time_ >= stroke_.longest) return true;
+    if (stroke_.until_stretch) {
+      const double stretch = state.piston.position / first_length_;
+      if (stroke_.speed > 0 ? stretch >= *stroke_.until_stretch : stretch <= *stroke_.until_stretch) return true;
+    }
+    if (!stroke_.until_temperature && !stroke_.until_entropy_returns) return false;
+    const Totals now = totals(state);
+    const bool done =
+        (stroke_.until_temperature && crosses(temperature_, now.temperature - *stroke_.until_temperature)) ||
+        (stroke_.until_entropy_returns && crosses(entropy_, now.entropy - start_entropy_));
+    return done;
+  }
+
+ private:
+  /// Has the sign changed since the last look?
+  static bool crosses(double& last, double value) {
+    const bool crossed = last * value < 0.0 || (value == 0.0 && last != 0.0);
+    last = value;
+    return crossed;
+  }
+
+  const Stroke& stroke_;
+  double start_time_, first_length_, start_entropy_;
+  double temperature_ = 0, entropy_ = 0;
+};
+
+class Recorder {
+ public:
+  explicit Recorder(const State& state) : first_(totals(state)), last_length_(state.piston.position) {}
+
+  void add_step(const State& state) {
+    impulse_ += state.piston.force * state.step;
+    duration_ += state.step;
+  }
+  bool is_due(const State& state, double spacing) const {
+    return std::abs(state.piston.position - last_length_) >= spacing;
+  }
+  void read(const State& state, std::size_t stroke, std::vector<Reading>& history) {
+    const Totals now = totals(state);
+    history.push_back({.stroke = stroke,
+                       .time = state.time,
+                       .length = state.piston.position,
+                       .force = duration_ > 0.0 ? impulse_ / duration_ : 0.0,
+                       .temperature = now.temperature,
+                       .stress_xx = now.stress_xx,
+                       .stress_yy = now.stress_yy,
+                       .piston_work = state.piston.work,
+                       .heat = state.bath.heat,
+                       .bath_entropy = state.bath.entropy,
+                       .entropy = now.entropy - first_.entropy,
+                       .internal = now.internal - first_.internal,
+                       .kinetic = now.kinetic,
+                       .damping = state.damping,
+                       .interface = state.interface_energy});
+    last_length_ = state.piston.position;
+    impulse_ = duration_ = 0.0;
+  }
+  const Totals& first() const { return first_; }
+
+ private:
+  Totals first_;
+  double last_length_, impulse_ = 0, duration_ = 0;
+};
+
+/// Refuses what no reading should be taken from.
+void judge(BodiesResult& result, const Scene& scene) {
+  if (result.history.empty()) return;
+  double largest = 0.0, most_kinetic = 0.0;
+  for (const Reading& r : result.history) {
+    largest = std::max({largest, std::abs(r.piston_work), std::abs(r.heat), std::abs(r.internal)});
+    most_kinetic = std::max(most_kinetic, r.kinetic);
+  }
+  constexpr double most_residue = 0.01, most_moving = 0.05;
+  const double residue = std::abs(result.history.back().residue());
+  if (!(residue <= most_residue * largest))
+    result.refusals.push_back(fmt::format("the energy ledger leaves {:.2g} % open (allowed {:.0f} %)",
+                                          100 * residue / largest, 100 * most_residue));
+  if (!(most_kinetic <= most_moving * largest))
+    result.refusals.push_back(
+        fmt::format("kinetic energy reaches {:.2g} % of the largest (allowed {:.0f} %): move the "
+                    "piston more slowly or damp",
+                    100 * most_kinetic / largest, 100 * most_moving));
+  if (result.stroke_ends.size() == scene.strokes.size()) result.measures = measure(result, scene);
+}
+
+}  // namespace
+
+BodiesResult run(const Scene& scene, const std::function<bool(std::size_t, double)>& progress) {
+  const auto begin = std::chrono::steady_clock::now();
+  BodiesResult result;
+  State state = lay_out(scene);
+  Joint joint(state, scene);
+  Recorder recorder(state);
+  for (const Body& body : state.bodies) result.particles += body.points.size();
+  const double spacing = scene.length / readings_per_length;
+  const double start_temperature = recorder.first().temperature;
+  recorder.read(state, 0, result.history);
+
+  for (std::size_t s = 0; s < scene.strokes.size() && result.refusals.empty() && state.breakdown.empty(); ++s) {
+    const Stroke& stroke = scene.strokes[s];
+    StrokeEnd end(stroke, state.time, scene.length, recorder.first().entropy);
+    // A stroke that only waits is read in time.
+    double next_in_time = state.time;
+    const double wait = std::isfinite(stroke.longest) ? stroke.longest / readings_per_length : stroke.longest;
+    while (state.breakdown.empty()) {
+      const double towards = stroke.ramp > 0.0 ? 1.0 - std::exp(-state.step / stroke.ramp) : 1.0;
+      state.piston.speed += towards * (stroke.speed - state.piston.speed);
+      advance(state, scene, stroke, joint);
+      recorder.add_step(state);
+      result.particle_steps += static_cast<std::int64_t>(result.particles);
+      if (result.steps == 0) result.first_step_temperature_change = totals(state).temperature - start_temperature;
+      if (++result.steps % steps_between_time_steps == 0) state.step = stable_step(state, scene);
+      const bool over = end.reached(state);
+      if (!over && !recorder.is_due(state, spacing) && state.time < next_in_time + wait) continue;
+      next_in_time = state.time;
+      recorder.read(state, s, result.history);
+      if (over) {
+        result.stroke_ends.push_back(result.history.size() - 1);
+        break;
+      }
+      if (!(state.piston.position > 1e-3 * scene.length && state.piston.position < 1e3 * scene.length))
+        state.breakdown = fmt::format("stroke {} passed {:.3g} times the box's length without meeting its end", s + 1,
+                                      state.piston.position / scene.length);
+      if (progress && !progress(s, state.piston.position / scene.length)) {
+        result.refusals.emplace_back("interrupted");
+        break;
+      }
+    }
+  }
+  if (!state.breakdown.empty())
+    result.refusals.push_back(fmt::format("broke down after {:.3g} ms: {}", 1e3 * state.time, state.breakdown));
+  judge(result, scene);
+  result.accepted = result.refusals.empty();
+  result.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return result;
+}
+
+nlohmann::ordered_json result_json(const BodiesResult& result) {
+  nlohmann::ordered_json json;
+  json["accepted"] = result.accepted;
+  json["refusals"] = result.refusals;
+  json["results"] = result.measures;
+  const auto column = [&](const char* name, auto value) {
+    auto& values = json["history"][name] = nlohmann::ordered_json::array();
+    for (const Reading& reading : result.history) values.push_back(value(reading));
+  };
+  column("stroke", [](const Reading& r) { return r.stroke + 1; });
+  column("time", [](const Reading& r) { return r.time; });
+  column("length", [](const Reading& r) { return r.length; });
+  column("force", [](const Reading& r) { return r.force; });
+  column("stress_xx", [](const Reading& r) { return r.stress_xx; });
+  column("stress_yy", [](const Reading& r) { return r.stress_yy; });
+  column("temperature", [](const Reading& r) { return r.temperature; });
+  column("piston_work", [](const Reading& r) { return r.piston_work; });
+  column("heat", [](const Reading& r) { return r.heat; });
+  column("entropy", [](const Reading& r) { return r.entropy; });
+  column("internal", [](const Reading& r) { return r.internal; });
+  column("kinetic", [](const Reading& r) { return r.kinetic; });
+  column("damping", [](const Reading& r) { return r.damping; });
+  column("interface", [](const Reading& r) { return r.interface; });
+  column("residue", [](const Reading& r) { return r.residue(); });
+  json["units"] = {{"time", "s"},        {"length", "mm"},        {"force", "N/mm"},         {"stress", "MPa"},
+                   {"temperature", "K"}, {"energies", "N mm/mm"}, {"entropy", "N mm/(mm K)"}};
+  json["cost"] = {{"wall_s", result.wall_seconds},
+                  {"steps", result.steps},
+                  {"particles", result.particles},
+                  {"particle_steps", result.particle_steps}};
+  return json;
+}
+
+}  // namespace kerf::forward::bodies

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <array>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "models/base/document.hpp"
+#include "models/laws/body_law.hpp"
+
+namespace kerf::forward::bodies {
+
+/// An experiment on bodies in a box instead of a cut: plain data in consistent units (mm, MPa, N, tonne, s, K). The
+/// box's right wall is a piston; strokes say how it moves and what happens to the heat.
+
+struct BodyPlan {
+  laws::BodyLaw law;
+  double left, bottom, width, height;  ///< a rectangle, mm
+  double temperature = 0;              ///< at the start, K; only of thermal laws
+  std::string where;                   ///< of the block in its file
+};
+
+enum class Wall { open, roller };
+enum Edge : std::size_t { left, right, bottom, top };
+inline constexpr std::array<const char*, 4> edge_names{"left", "right", "bottom", "top"};
+
+/// How heat comes and goes while the piston moves.
+enum class Heat { none, adiabatic, isothermal };
+
+/// A motion of the piston, until the first of its conditions holds.
+struct Stroke {
+  Heat heat = Heat::none;
+  double temperature = 0;    ///< of the bath of an isothermal stroke, K
+  double exchange_time = 0;  ///< in which the bath and a body come to 1/e of their difference; 0: at once
+  double speed = 0;          ///< of the piston, outwards positive, mm/s
+  double ramp = 0;           ///< time constant in which the piston takes that speed, s
+  double longest = std::numeric_limits<double>::infinity();  ///< time, s
+  std::optional<double> until_stretch;                       ///< length of the box over its first length
+  std::optional<double> until_temperature;                   ///< mean over the bodies, K
+  bool until_entropy_returns = false;                        ///< of the bodies, to what it was at the very start
+};
+
+/// Two bodies that meet along a straight line, joined by springs: t_n = D_n [u_n], t_t = D_t [u_t].
+struct Interface {
+  double normal, compressive, tangential;  ///< MPa/mm; compressive: D_n where the faces overlap
+};
+
+/// FLIP blended towards PIC, as in a cut.
+struct PicDamping {
+  double rate;
+};
+
+/// What to read off the run: see bodies/measures.
+enum class Measure { cycle, rubber, expansion, modulus };
+inline constexpr std::array<const char*, 4> measure_names{"cycle", "rubber", "expansion", "modulus"};
+
+struct Scene {
+  std::string title;
+  double length, height, cell;  ///< of the box, mm
+  int particles_per_cell_side;
+  double courant_number;
+  std::array<Wall, 4> walls;
+  std::vector<BodyPlan> bodies;
+  std::vector<Stroke> strokes;
+  std::optional<Interface> interface;
+  std::optional<PicDamping> pic_damping;
+  std::vector<Measure> measures;
+  bool is_thermal() const;
+};
+
+/// True when a document is a scene of bodies, not of a cut.
+bool has_bodies(const Document& document);
+
+const std::vector<Block>& scene_blocks();
+
+/// Throws InputError on anything that is not a valid scene of bodies.
+Scene read_scene(const Document& document);
+
+}  // namespace kerf::forward::bodies
