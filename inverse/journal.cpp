@@ -73,18 +73,26 @@ void Journal::read() {
     }
     lines_.push_back(std::move(line));
     begin = end + 1;
+    size_ = static_cast<std::int64_t>(begin);
   }
 }
 
 void Journal::append(const Json& line) {
+  const auto refuse = [&] {
+    const int cause = errno;
+    static_cast<void>(::ftruncate(descriptor_, size_) == 0);  // else the torn line is cut off at the next opening
+    throw InputError(fmt::format("{}: cannot write the journal: {}; every line before is kept", file_.string(),
+                                 std::strerror(cause)));
+  };
   const std::string text = line.dump() + '\n';
   for (std::size_t written = 0; written < text.size();) {
     const ssize_t count = ::write(descriptor_, text.data() + written, text.size() - written);
     if (count < 0 && errno == EINTR) continue;
-    if (count < 0) fail(file_, "cannot write the journal");
+    if (count < 0) refuse();
     written += static_cast<std::size_t>(count);
   }
-  if (::fsync(descriptor_) != 0) fail(file_, "cannot flush the journal");
+  if (::fsync(descriptor_) != 0) refuse();
+  size_ += static_cast<std::int64_t>(text.size());
 }
 
 }  // namespace kerf::inverse

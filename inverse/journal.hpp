@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <vector>
@@ -22,8 +23,8 @@ class Journal {
   /// The lines that stood in the file when it was opened, in order.
   const std::vector<Json>& lines() const { return lines_; }
 
-  /// Writes one line and returns when it is on the disk. Throws std::system_error when it cannot be written. Not to be
-  /// called by two threads at once.
+  /// Writes one line and returns when it is on the disk. Throws InputError when it cannot be written, as on a full
+  /// disk; the file then ends with the line before. Not to be called by two threads at once.
   void append(const Json& line);
 
  private:
@@ -31,6 +32,7 @@ class Journal {
 
   std::filesystem::path file_;
   int descriptor_ = -1;
+  std::int64_t size_ = 0;  ///< of what is known to be on the disk
   std::vector<Json> lines_;
 };
 

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 
 #include <bit>
@@ -59,6 +60,40 @@ TEST(Journal, IsHeldByOneProcessAtATime) {
                 ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("another process")));
   }
   EXPECT_NO_THROW(Journal(folder / "journal.jsonl"));
+}
+
+/// No file of this process grows over `bytes` while this lives, as on a full disk.
+class SizeLimit {
+ public:
+  explicit SizeLimit(rlim_t bytes) {
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{bytes, before_.rlim_max};
+    ::signal(SIGXFSZ, SIG_IGN);
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~SizeLimit() { ::setrlimit(RLIMIT_FSIZE, &before_); }
+
+ private:
+  rlimit before_{};
+};
+
+TEST(Journal, LosesNothingOnAFullDisk) {
+  const TemporaryFolder folder;
+  const auto file = folder / "journal.jsonl";
+  Journal journal(file);
+  journal.append({{"a", 1}});
+  {
+    const SizeLimit limit(20);
+    EXPECT_THAT(
+        [&] {
+          journal.append({{"a", "longer than what is left"}});
+        },
+        ::testing::ThrowsMessage<InputError>(::testing::AllOf(::testing::HasSubstr("journal.jsonl: cannot write"),
+                                                              ::testing::HasSubstr("File too large"))));
+    EXPECT_EQ(read_file(file), "{\"a\":1}\n");
+  }
+  journal.append({{"a", 2}});
+  EXPECT_THAT(lines_of(file), ::testing::ElementsAre(R"({"a":1})", R"({"a":2})"));
 }
 
 TEST(Journal, KeepsEveryBitOfARecord) {
