@@ -42,6 +42,16 @@ class Calibrator {
   }
 
   Calibration run() {
+    try {
+      return complete();
+    } catch (const Interrupted&) {
+      if (!objective_.best()) throw;
+      return stop();
+    }
+  }
+
+ private:
+  Calibration complete() {
     const Start start = find_start(job_, space_);
     result_.start = start.point;
     result_.start_origin = start.origin;
@@ -67,7 +77,20 @@ class Calibrator {
     return std::move(result_);
   }
 
- private:
+  /// Whatever was known when the user stopped the search: the fit itself, if only its alternatives are missing.
+  Calibration stop() {
+    if (result_.fit.at.point.size() == 0)
+      result_.fit =
+          conclude(objective_,
+                   {.best = *objective_.best(), .converged = false, .reason = "stopped before the end", .model = {}});
+    result_.partial = true;
+    result_.trace = objective_.trace();
+    result_.failing_share = objective_.failing_share(result_.fit.at);
+    result_.exit_code = ExitCode::interrupted;
+    result_.statement = state(job_, result_);
+    return std::move(result_);
+  }
+
   /// The start, or the middle of the ranges when too many cuts fail there.
   Evaluation evaluate_start(const Eigen::VectorXd& point) {
     Evaluation first = objective_.evaluate(point);

@@ -31,13 +31,14 @@ struct Calibration {
   Eigen::VectorXd start;
   std::string start_origin;  ///< where the start values come from, in words
   double failing_share = 0;  ///< of the cuts at the estimate
+  bool partial = false;      ///< stopped by the user: the best point so far, usually without errors
   ExitCode exit_code = ExitCode::success;
   std::string statement;  ///< what is and what is not determined, in plain English
 };
 
 /// Fits the job's free parameters to its curves by simulation. Deterministic: with equal runs in the database, from the
-/// journal or fresh, the answer is bitwise the same. Spends at most job.budget.max_runs distinct runs. Lets pass what
-/// the simulator throws (Interrupted).
+/// journal or fresh, the answer is bitwise the same. Spends at most job.budget.max_runs distinct runs. When the
+/// simulator throws Interrupted the answer is partial; Interrupted passes if not a single point was simulated by then.
 Calibration calibrate(const Job& job, RunDatabase& database,
                       const std::function<void(const TraceEntry&)>& on_trace = {});
 

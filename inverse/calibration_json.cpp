@@ -156,6 +156,7 @@ Json calibration_json(const Job& job, const Calibration& calibration, const Cali
       result["parameters"][p.name]["interval_over_assumptions"] =
           interval(over_all_assumptions(calibration, j), p.unit);
     }
+  if (calibration.partial) result["partial"] = true;
   result["exit_code"] = static_cast<int>(calibration.exit_code);
   result["method"] = job.optimiser.method;
   result["runs"] = cost.runs;

@@ -26,6 +26,7 @@ struct CalibrationCost {
 /// residuals
 ///   (measured - fitted) in standard errors, acceptance
 /// - "trace": the search, "statement": what is and is not determined, "exit_code", "converged", "reason", ...
+/// - "partial": true when the user stopped the search, else absent
 /// A number that is not finite (the error of a parameter the data do not see) is null. Forces per width are in N/m.
 nlohmann::ordered_json calibration_json(const Job& job, const Calibration& calibration, const CalibrationCost& cost);
 

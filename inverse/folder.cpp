@@ -31,6 +31,7 @@ std::vector<const InputFile*> inputs(const Job& job) {
 void apply(const JobOverride& override, Job& job) {
   if (override.max_runs > 0) job.budget.max_runs = override.max_runs;
   if (override.parallel > 0) job.budget.parallel = override.parallel;
+  if (!override.backend.empty()) job.budget.backend = override.backend;
   if (!override.preset.empty()) forward::impose_preset(job.scene, override.preset, job.source.name);
 }
 
@@ -59,7 +60,8 @@ void write_inputs(const fs::path& folder, const Job& job, const std::string& pre
                       {"code", code},
                       {"inputs", std::move(files)},
                       {"max_runs", job.budget.max_runs},
-                      {"parallel", job.budget.parallel}};
+                      {"parallel", job.budget.parallel},
+                      {"backend", job.budget.backend}};
   write_atomically(folder / manifest_name, manifest.dump(2) + "\n");
 }
 
@@ -136,7 +138,8 @@ Folder Folder::open(const fs::path& folder, const JobOverride& override, const s
   Job job = read_copies(folder, manifest);
   apply({.max_runs = manifest.at("max_runs").get<std::size_t>(),
          .parallel = manifest.at("parallel").get<int>(),
-         .preset = manifest.at("preset").get<std::string>()},
+         .preset = manifest.at("preset").get<std::string>(),
+         .backend = manifest.value("backend", "")},
         job);
   apply(override, job);
   return {folder, std::move(job), open_journal(folder)};

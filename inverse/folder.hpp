@@ -13,7 +13,8 @@ namespace kerf::inverse {
 struct JobOverride {
   std::size_t max_runs = 0;
   int parallel = 0;
-  std::string preset;  ///< written over the scene (see forward/scene/preset.hpp)
+  std::string preset = {};   ///< written over the scene (see forward/scene/preset.hpp)
+  std::string backend = {};  ///< see find_backend
 };
 
 /// The folder a calibration lives in. It holds copies of all inputs, so that it can be resumed from itself alone:

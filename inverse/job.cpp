@@ -253,7 +253,11 @@ Job read_job(const fs::path& file, const std::string& name, const Locate& locate
   job.budget = {.max_runs = whole_number(budget, "max_runs"),
                 .parallel = static_cast<int>(whole_number(budget, "parallel")),
                 .tolerance = budget.number("tolerance"),
-                .failing_share = budget.number("failing_share")};
+                .failing_share = budget.number("failing_share"),
+                .time_out = budget.number("time_out"),
+                .shortest_time_out = budget.number("shortest_time_out"),
+                .first_time_out = budget.number("first_time_out"),
+                .backend = budget.text("backend")};
   const Values& optimiser = contents.at("optimiser");
   job.optimiser = {
       .method = optimiser.text("method"), .step = optimiser.number("step"), .noise = optimiser.number("noise")};

@@ -63,6 +63,9 @@ struct Budget {
   int parallel = 2;
   double tolerance = 0.02;      ///< decrease of chi^2 that is not worth another run
   double failing_share = 0.34;  ///< of the cuts at the estimate; above it the calibration has failed (exit code 5)
+  double time_out = 10;         ///< of a run, in medians of the finished runs of its cut, but ...
+  double shortest_time_out = 60, first_time_out = 3600;  ///< s; ... at least this, and that while none has finished
+  std::string backend = "local";                         ///< see find_backend
 };
 
 struct OptimiserChoice {

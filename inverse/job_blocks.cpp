@@ -1,4 +1,5 @@
 #include "forward/scene/preset.hpp"
+#include "inverse/backend.hpp"
 #include "inverse/job.hpp"
 #include "inverse/optimiser.hpp"
 
@@ -67,7 +68,16 @@ std::vector<Block> declare() {
                           .or_else("0.02"),
                       number("failing_share", "1", 0, 1,
                              "share of the cuts whose simulation may fail at the estimate (above it: exit code 5)")
-                          .or_else("0.34")},
+                          .or_else("0.34"),
+                      number("time_out", "1", 1.5, 1e6,
+                             "a run is given up after this many medians of the finished runs of its cut")
+                          .or_else("10"),
+                      number("shortest_time_out", "s", 0.1, 1e7, "but never before this time").or_else("60 s"),
+                      number("first_time_out", "s", 0.1, 1e7, "a run's time while none of its job has finished")
+                          .or_else("3600 s"),
+                      text("backend", "where runs live: processes of this machine, or jobs of a Slurm cluster",
+                           backend_names())
+                          .or_else("local")},
        .required = true},
       {.path = "optimiser",
        .variant = "",

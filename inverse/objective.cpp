@@ -51,6 +51,11 @@ std::vector<Evaluation> Objective::evaluate(const std::vector<Eigen::VectorXd>& 
 
 void Objective::trace(std::string what, const Evaluation& at) {
   const Residuals residuals = misfit_.residuals(at);
+  const auto better = [&](const Evaluation& before) {
+    const std::size_t then = count(before.usable), now = count(at.usable);
+    return now > then || (now == then && residuals.chi2 < misfit_.residuals(before).chi2);
+  };
+  if (!best_ || better(*best_)) best_ = at;
   trace_.push_back({.what = std::move(what),
                     .runs = database_.runs(),
                     .chi2 = residuals.chi2,

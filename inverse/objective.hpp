@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -50,6 +51,8 @@ class Objective {
   /// Remembers a step of the search and reports it as progress.
   void trace(std::string what, const Evaluation& at);
   const std::vector<TraceEntry>& trace() const { return trace_; }
+  /// The traced point of the smallest misfit among those where the fewest cuts failed, if any was traced.
+  const std::optional<Evaluation>& best() const { return best_; }
   std::function<void(const TraceEntry&)> on_trace;
 
   /// Changes what may be spent in all.
@@ -67,6 +70,7 @@ class Objective {
   RunDatabase& database_;
   std::size_t max_runs_;
   std::vector<TraceEntry> trace_;
+  std::optional<Evaluation> best_;
 };
 
 }  // namespace kerf::inverse

@@ -20,13 +20,23 @@ constexpr std::size_t results_kept = 64;
 struct RunDatabase::Task {
   std::string key;
   const RunRequest* request;
-  forward::Scene scene;
 };
 
-RunDatabase::RunDatabase(Journal& journal, std::string code, Simulator simulate, int parallel, RunEvents events)
+RunDatabase::RunDatabase(Journal& journal, std::string code, const Simulator& simulate, int parallel, RunEvents events)
+    : RunDatabase(
+          journal, std::move(code),
+          [this, simulate](const RunRequest& request, const std::string& key, std::optional<double>) {
+            forward::CutResult result = simulate(forward::read_scene(request.scene));
+            RunRecord record = summarise(result);
+            keep_recent(key, std::move(result));
+            return record;
+          },
+          parallel, std::move(events)) {}
+
+RunDatabase::RunDatabase(Journal& journal, std::string code, Runner runner, int parallel, RunEvents events)
     : journal_(journal),
       code_(std::move(code)),
-      simulate_(std::move(simulate)),
+      runner_(std::move(runner)),
       parallel_(std::max(1, parallel)),
       events_(std::move(events)) {
   double session = 0;
@@ -38,7 +48,7 @@ RunDatabase::RunDatabase(Journal& journal, std::string code, Simulator simulate,
     if (!line.contains("run")) continue;
     RunRecord record = record_from_json(line.at("run"));
     session = std::max(session, line.at("elapsed_s").get<double>());
-    seconds_[line.at("cut").get<std::size_t>()] = record.wall_seconds;
+    if (!record.lost) seconds_[line.at("cut").get<std::size_t>()].push_back(record.wall_seconds);
     known_.emplace(line.at("key").get<std::string>(), std::move(record));
   }
   earlier_seconds_ += session;
@@ -78,8 +88,19 @@ double RunDatabase::wall_seconds() const {
 }
 
 double RunDatabase::expected_seconds(std::size_t cut) const {
-  if (const auto found = seconds_.find(cut); found != seconds_.end()) return found->second;
-  return seconds_.empty() ? 0 : seconds_.begin()->second;
+  if (const auto found = seconds_.find(cut); found != seconds_.end()) return found->second.back();
+  return seconds_.empty() ? 0 : seconds_.begin()->second.back();
+}
+
+std::optional<double> RunDatabase::median_seconds(std::size_t cut) const {
+  std::vector<double> seconds;
+  if (const auto found = seconds_.find(cut); found != seconds_.end()) seconds = found->second;
+  if (seconds.empty())
+    for (const auto& [other, finished] : seconds_) seconds.insert(seconds.end(), finished.begin(), finished.end());
+  if (seconds.empty()) return std::nullopt;
+  const auto middle = seconds.begin() + static_cast<std::ptrdiff_t>(seconds.size() / 2);
+  std::nth_element(seconds.begin(), middle, seconds.end());
+  return *middle;
 }
 
 std::vector<RunRecord> RunDatabase::run(const std::vector<RunRequest>& requests) {
@@ -90,7 +111,8 @@ std::vector<RunRecord> RunDatabase::run(const std::vector<RunRequest>& requests)
     keys.push_back(key(request.scene));
     if (known_.contains(keys.back()) || !planned.insert(keys.back()).second) continue;
     try {
-      tasks.push_back({keys.back(), &request, forward::read_scene(request.scene)});
+      forward::read_scene(request.scene);
+      tasks.push_back({keys.back(), &request});
     } catch (const InputError& error) {
       known_.emplace(keys.back(), refused(error.what()));
     }
@@ -118,7 +140,11 @@ void RunDatabase::simulate_all(std::vector<Task>& tasks) {
   const auto work = [&] {
     for (std::size_t i = next++; i < tasks.size(); i = next++) {
       try {
-        finish(tasks[i], simulate_(tasks[i].scene));
+        const std::optional<double> median = [&] {
+          const std::lock_guard lock(finishing_);
+          return median_seconds(tasks[i].request->cut);
+        }();
+        finish(tasks[i], runner_(*tasks[i].request, tasks[i].key, median));
       } catch (...) {
         const std::lock_guard lock(finishing_);
         if (!failure) failure = std::current_exception();
@@ -134,20 +160,28 @@ void RunDatabase::simulate_all(std::vector<Task>& tasks) {
   if (failure) std::rethrow_exception(failure);
 }
 
-void RunDatabase::finish(Task& task, forward::CutResult result) {
-  const RunRecord record = summarise(result);
+void RunDatabase::keep_recent(const std::string& key, forward::CutResult result) {
   const std::lock_guard lock(finishing_);
+  recent_.emplace_back(key, std::move(result));
+  if (recent_.size() > results_kept) recent_.pop_front();
+}
+
+/// In the journal first, then here.
+void RunDatabase::remember(const Task& task, const RunRecord& record) {
   const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
   journal_.append({{"key", task.key},
                    {"cut", task.request->cut},
                    {"label", task.request->label},
                    {"elapsed_s", elapsed},
                    {"run", to_json(record)}});
+  if (!record.lost) seconds_[task.request->cut].push_back(record.wall_seconds);
   known_.emplace(task.key, record);
-  seconds_[task.request->cut] = record.wall_seconds;
+}
+
+void RunDatabase::finish(const Task& task, const RunRecord& record) {
+  const std::lock_guard lock(finishing_);
+  remember(task, record);
   ++simulated_;
-  recent_.emplace_back(task.key, std::move(result));
-  if (recent_.size() > results_kept) recent_.pop_front();
   if (events_.run_ends) events_.run_ends(*task.request, record);
 }
 

@@ -19,15 +19,20 @@ namespace kerf::inverse {
 /// How a cut is simulated: forward::run in earnest, anything quick in a test. Called by several threads at once.
 using Simulator = std::function<forward::CutResult(const forward::Scene&)>;
 
-/// Thrown by a simulator that was told to stop: the run is abandoned, not remembered.
-struct Interrupted {};
-
 /// One cut to simulate; `label` is for the eyes of the user, `cut` groups runs of about equal cost.
 struct RunRequest {
   Document scene;
   std::string label;
   std::size_t cut = 0;
 };
+
+/// A run made elsewhere, of which only the record comes back. `median_seconds` is that of the finished runs of the same
+/// cut (of any cut, if none has finished). Called by several threads at once.
+using Runner =
+    std::function<RunRecord(const RunRequest&, const std::string& key, std::optional<double> median_seconds)>;
+
+/// Thrown by a simulator that was told to stop: the run is abandoned, not remembered.
+struct Interrupted {};
 
 /// Told about every run as it ends, and about batches as they begin.
 struct RunEvents {
@@ -40,7 +45,8 @@ struct RunEvents {
 class RunDatabase {
  public:
   /// `journal` outlives the database. `code` names the code, `parallel` >= 1 is the number of runs at a time.
-  RunDatabase(Journal& journal, std::string code, Simulator simulate, int parallel, RunEvents events = {});
+  RunDatabase(Journal& journal, std::string code, const Simulator& simulate, int parallel, RunEvents events = {});
+  RunDatabase(Journal& journal, std::string code, Runner runner, int parallel, RunEvents events = {});
 
   /// The records of all requests, in their order. Missing ones are simulated, longest first; the order in which they
   /// finish influences nothing. Rethrows what a simulator throws, after the other runs under way have ended.
@@ -69,17 +75,20 @@ class RunDatabase {
  private:
   struct Task;
   void simulate_all(std::vector<Task>& tasks);
-  void finish(Task& task, forward::CutResult result);
+  void finish(const Task& task, const RunRecord& record);
+  void remember(const Task& task, const RunRecord& record);
+  void keep_recent(const std::string& key, forward::CutResult result);
+  std::optional<double> median_seconds(std::size_t cut) const;
   double expected_seconds(std::size_t cut) const;
 
   Journal& journal_;
   std::string code_;
-  Simulator simulate_;
+  Runner runner_;
   int parallel_;
   RunEvents events_;
   std::map<std::string, RunRecord> known_;
   std::set<std::string> asked_;
-  std::map<std::size_t, double> seconds_;  ///< last wall time of each cut
+  std::map<std::size_t, std::vector<double>> seconds_;  ///< wall times of each cut's runs
   std::deque<std::pair<std::string, forward::CutResult>> recent_;
   std::size_t simulated_ = 0;
   double earlier_seconds_ = 0;

@@ -49,7 +49,8 @@ RunRecord summarise(const forward::CutResult& result) {
           .refusals = result.refusals,
           .ledger = result.ledger,
           .wall_seconds = result.cost.wall_seconds,
-          .result = forward::result_json(result)};
+          .result = forward::result_json(result),
+          .retried = {}};
 }
 
 RunRecord refused(std::string cause) {
@@ -60,22 +61,25 @@ RunRecord refused(std::string cause) {
 
 Json to_json(const RunRecord& r) {
   const forward::Ledger& l = r.ledger;
-  return {{"F_c", estimate(r.F_c)},
-          {"F_t", estimate(r.F_t)},
-          {"chip_ratio", estimate(r.chip_ratio)},
-          {"chip_curvature", estimate(r.chip_curvature)},
-          {"crack_lead", estimate(r.crack_lead)},
-          {"branch", r.branch == forward::Branch::bending ? "bending" : "touching"},
-          {"mode_I_fraction", number(r.mode_I_fraction)},
-          {"fracture_energy_ratio", number(r.fracture_energy_ratio)},
-          {"deepest_penetration", number(r.deepest_penetration)},
-          {"steady", r.steady},
-          {"accepted", r.accepted},
-          {"refusals", r.refusals},
-          {"ledger", Json::array({number(l.tool_work), number(l.fracture), number(l.plastic), number(l.elastic),
-                                  number(l.kinetic), number(l.friction), number(l.damping)})},
-          {"wall_s", number(r.wall_seconds)},
-          {"result", r.result}};
+  Json json{{"F_c", estimate(r.F_c)},
+            {"F_t", estimate(r.F_t)},
+            {"chip_ratio", estimate(r.chip_ratio)},
+            {"chip_curvature", estimate(r.chip_curvature)},
+            {"crack_lead", estimate(r.crack_lead)},
+            {"branch", r.branch == forward::Branch::bending ? "bending" : "touching"},
+            {"mode_I_fraction", number(r.mode_I_fraction)},
+            {"fracture_energy_ratio", number(r.fracture_energy_ratio)},
+            {"deepest_penetration", number(r.deepest_penetration)},
+            {"steady", r.steady},
+            {"accepted", r.accepted},
+            {"refusals", r.refusals},
+            {"ledger", Json::array({number(l.tool_work), number(l.fracture), number(l.plastic), number(l.elastic),
+                                    number(l.kinetic), number(l.friction), number(l.damping)})},
+            {"wall_s", number(r.wall_seconds)},
+            {"result", r.result}};
+  if (!r.retried.empty()) json["retried"] = r.retried;
+  if (r.lost) json["lost"] = true;
+  return json;
 }
 
 RunRecord record_from_json(const Json& json) {
@@ -100,7 +104,9 @@ RunRecord record_from_json(const Json& json) {
                      .friction = number_from(l.at(5)),
                      .damping = number_from(l.at(6))},
           .wall_seconds = number_from(json.at("wall_s")),
-          .result = json.at("result")};
+          .result = json.at("result"),
+          .retried = json.value("retried", ""),
+          .lost = json.value("lost", false)};
 }
 
 }  // namespace kerf::inverse

@@ -26,6 +26,8 @@ struct RunRecord {
   forward::Ledger ledger;
   double wall_seconds = 0;
   nlohmann::ordered_json result;  ///< forward::result_json, for tables: all there is to show; null if it never ran
+  std::string retried;            ///< what became of a first attempt, and what the second did otherwise; else empty
+  bool lost = false;              ///< no attempt ended with a result: it crashed or hung
 };
 
 RunRecord summarise(const forward::CutResult& result);

@@ -113,10 +113,14 @@ std::string state(const Job& job, const Calibration& calibration) {
         text += fmt::format(" At depth {}: {}.", show(job.cuts[cut].depth, "mm"), refusal);
     return text;
   }
+  if (calibration.partial && fit.converged) text = "Stopped before the other assumption about the edge was fitted. ";
   if (!fit.converged)
     text = fmt::format("The search did not converge: {}. What follows is where it stopped. ", fit.reason);
   if (!fit.has_slopes)
-    return text + "The budget did not cover the differences that errors come from, so no parameter is judged.";
+    return text +
+           (calibration.partial ? "It was stopped before the differences that errors come from"
+                                : "The budget did not cover the differences that errors come from") +
+           ", so no parameter is judged.";
   const std::vector<ParameterEstimate>& parameters = fit.identifiability.parameters;
   for (std::size_t j = 0; j < parameters.size(); ++j) {
     std::string sentence = about(parameters[j], over_all_assumptions(calibration, j));

@@ -9,9 +9,10 @@
 #include "forward/record/result_json.hpp"
 #include "inverse/calibration.hpp"
 #include "inverse/calibration_json.hpp"
+#include "inverse/child_runs.hpp"
 #include "inverse/closed_form_reduction.hpp"
 #include "inverse/commands/interrupt.hpp"
-#include "inverse/commands/interruptible_run.hpp"
+#include "inverse/commands/stop.hpp"
 #include "inverse/manifest.hpp"
 #include "inverse/reduction_json.hpp"
 #include "inverse/statement.hpp"
@@ -49,6 +50,7 @@ class ProgressLines {
     } else {
       outcome = "refused: " + (record.refusals.empty() ? std::string("no reason given") : record.refusals.front());
     }
+    if (!record.retried.empty()) outcome += fmt::format(" [{}]", record.retried);
     fmt::print(stderr, "  run {} ({} left in this batch): {}: {} ({:.1f} s)\n", done_, left_, request.label, outcome,
                record.wall_seconds);
   }
@@ -62,9 +64,22 @@ class ProgressLines {
   std::size_t max_runs_, done_ = 0, left_ = 0;
 };
 
-/// The cuts at the estimate in full. Those no longer in memory, after a resume, are simulated once more.
+/// Gives a cut's file another name; its XDMF description names the file it describes.
+void rename_cut(const fs::path& from, const fs::path& to) {
+  fs::create_directories(to.parent_path());
+  fs::rename(from, to);
+  const fs::path described = forward::xdmf_beside(from);
+  std::string xdmf = read_file(described);
+  const std::string old_name = from.filename().string(), new_name = to.filename().string();
+  for (std::size_t at = xdmf.find(old_name); at != std::string::npos; at = xdmf.find(old_name, at + new_name.size()))
+    xdmf.replace(at, old_name.size(), new_name);
+  write_atomically(forward::xdmf_beside(to), xdmf);
+  fs::remove(described);
+}
+
+/// The cuts at the estimate in full. Those whose files are gone are simulated once more.
 std::size_t keep_cuts(const inverse::Folder& folder, const inverse::Calibration& calibration,
-                      const inverse::RunDatabase& database) {
+                      const inverse::RunDatabase& database, inverse::ChildRuns& runs) {
   const inverse::Job& job = folder.job();
   const inverse::ParameterSpace space(job);
   std::size_t simulated = 0;
@@ -76,14 +91,17 @@ std::size_t keep_cuts(const inverse::Folder& folder, const inverse::Calibration&
       const ordered_json kept = ordered_json::parse(read_file(file), nullptr, false);
       if (!kept.is_discarded() && kept.value("run", "") == key) continue;
     }
-    std::optional<forward::CutResult> result = database.recent(scene);
-    if (!result) {
+    inverse::RunRecord record = calibration.fit.at.runs[index];
+    if (!runs.cut_file(key) && !record.lost) {
       fmt::print(stderr, "simulating the cut at depth {:.4g} mm once more to keep it in full\n", job.cuts[index].depth);
-      result = run_unless_interrupted(forward::read_scene(scene));
+      record = runs({.scene = scene, .label = {}, .cut = index}, key, std::nullopt);
+      runs.journaled(key);
       ++simulated;
     }
-    forward::write_cut(fs::path(file).replace_extension(".h5"), scene, *result);
-    ordered_json json = forward::result_json(*result);
+    const std::optional<fs::path> cut = runs.cut_file(key);
+    if (!cut) continue;
+    rename_cut(*cut, fs::path(file).replace_extension(".h5"));
+    ordered_json json = record.result;
     json["run"] = key;
     write_atomically(file, json.dump(2) + "\n");
   }
@@ -131,18 +149,28 @@ void print_table(const inverse::Calibration& calibration, const inverse::Calibra
              cost.wall_seconds);
 }
 
-ExitCode finish(inverse::Folder& folder, const std::string& code, Show show) {
+ExitCode finish(inverse::Folder& folder, const std::string& code, Show show, const Stop& stop) {
   const inverse::Job& job = folder.job();
   ProgressLines lines(job.budget.max_runs);
+  const fs::path scratch = folder.path() / "runs";
+  inverse::ChildRuns runs(inverse::run_command(), scratch, job.budget, [&] { return stop.reason() != nullptr; });
+  const inverse::RunDatabase* running = nullptr;
   inverse::RunDatabase database(
-      folder.journal(), code, run_unless_interrupted, job.budget.parallel,
-      {.batch_begins = [&](std::size_t runs, double seconds) { lines.batch_begins(runs, seconds); },
-       .run_ends = [&](const inverse::RunRequest& request,
-                       const inverse::RunRecord& record) { lines.run_ends(request, record); }});
+      folder.journal(), code, std::ref(runs), job.budget.parallel,
+      {.batch_begins = [&](std::size_t count, double seconds) { lines.batch_begins(count, seconds); },
+       .run_ends =
+           [&](const inverse::RunRequest& request, const inverse::RunRecord& record) {
+             runs.journaled(running->key(request.scene));
+             lines.run_ends(request, record);
+           }});
+  running = &database;
   const inverse::Calibration calibration =
       inverse::calibrate(job, database, [&](const inverse::TraceEntry& entry) { lines.step(entry); });
   inverse::CalibrationCost cost{.runs = database.runs(), .failed_runs = database.failed()};
-  cost.record_runs = keep_cuts(folder, calibration, database);
+  if (!calibration.partial) {
+    cost.record_runs = keep_cuts(folder, calibration, database, runs);
+    fs::remove_all(scratch);
+  }
   write_reduction(folder);
   cost.wall_seconds = database.wall_seconds();
   write_atomically(folder.path() / "manifest.json", inverse::manifest(job, code, cost.wall_seconds).dump(2) + "\n");
@@ -157,15 +185,23 @@ ExitCode finish(inverse::Folder& folder, const std::string& code, Show show) {
 
 }  // namespace
 
-ExitCode run_session(inverse::Folder& folder, const std::string& code, Show show) {
+ExitCode run_session(inverse::Folder& folder, const std::string& code, Show show, double max_seconds) {
   const StopOnInterrupt guard;
+  const Stop stop(folder.path(), max_seconds);
+  ExitCode ended = ExitCode::interrupted;
+  std::string report = "; no point was simulated yet";
   try {
-    return finish(folder, code, show);
+    ended = finish(folder, code, show, stop);
+    report = "; what is known so far is in result.json";
   } catch (const inverse::Interrupted&) {
-    fmt::print(stderr, "interrupted; every finished run is kept. Continue with: kerf resume {}\n",
-               folder.path().string());
-    return ExitCode::interrupted;
   }
+  if (ended == ExitCode::interrupted) {
+    const char* why = stop.reason();
+    std::fflush(stdout);
+    fmt::print(stderr, "{}{}. Every finished run is kept. Continue with: kerf resume {}\n", why ? why : "interrupted",
+               report, folder.path().string());
+  }
+  return ended;
 }
 
 }  // namespace kerf::commands

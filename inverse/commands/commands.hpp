@@ -17,6 +17,7 @@ void add_sweep(CLI::App& app, int& exit_code);
 void add_study(CLI::App& app, int& exit_code);
 void add_calibrate(CLI::App& app, int& exit_code);
 void add_resume(CLI::App& app, int& exit_code);
+void add_run(CLI::App& app, int& exit_code);
 void add_report(CLI::App& app, int& exit_code);
 
 }  // namespace kerf::commands

@@ -4,7 +4,7 @@
 
 namespace kerf::commands {
 
-/// While it lives, the first Ctrl-C asks simulations to stop at their next cell crossing; a second one ends the
+/// While it lives, the first Ctrl-C asks for a clean end at the next occasion; a second one ends the
 /// process, which a journal survives as well.
 class StopOnInterrupt {
  public:

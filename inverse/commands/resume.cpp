@@ -3,9 +3,11 @@
 #include <memory>
 #include <string>
 
+#include "inverse/backend.hpp"
 #include "inverse/commands/calibration_session.hpp"
 #include "inverse/commands/commands.hpp"
 #include "inverse/commands/job_study_session.hpp"
+#include "inverse/commands/stop.hpp"
 #include "inverse/commands/study_session.hpp"
 #include "inverse/commands/sweep_session.hpp"
 
@@ -15,6 +17,7 @@ void add_resume(CLI::App& app, int& exit_code) {
   struct Options {
     std::string folder;
     inverse::JobOverride changes;
+    double max_seconds = 0;
     bool json = false;
   };
   const auto options = std::make_shared<Options>();
@@ -24,6 +27,12 @@ void add_resume(CLI::App& app, int& exit_code) {
       ->check(CLI::PositiveNumber);
   command->add_option("--max-runs", options->changes.max_runs, "simulated cuts at most, of a calibration")
       ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--max-time", options->max_seconds,
+                   "stop a calibration cleanly after this time, s or with a unit: 2h")
+      ->transform(CLI::AsNumberWithUnit(time_units()));
+  command->add_option("--backend", options->changes.backend, "where runs of a calibration live: local or slurm")
+      ->check(CLI::IsMember(inverse::backend_names()));
   command->add_flag("--json", options->json, "print the result as JSON");
   command->footer("No finished run is repeated, and the answer is the one an undisturbed session gives, to the bit.");
   command->callback([options, &exit_code] {
@@ -42,7 +51,8 @@ void add_resume(CLI::App& app, int& exit_code) {
       return;
     }
     inverse::Folder folder = inverse::Folder::open(options->folder, options->changes, code);
-    exit_code = static_cast<int>(run_session(folder, code, options->json ? Show::json : Show::table));
+    exit_code =
+        static_cast<int>(run_session(folder, code, options->json ? Show::json : Show::table, options->max_seconds));
   });
 }
 

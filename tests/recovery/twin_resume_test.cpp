@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 
 #include <chrono>
@@ -89,6 +90,8 @@ TEST_F(TwinResume, AKilledCalibrationGivesTheSameBitsAndRepeatsNothing) {
   fs::remove(folder_ / "curve.csv");
   EXPECT_EQ(stop_after(kept + 1, folder_ / "killed", launch({"resume", path("killed")}), SIGINT), 130);
   EXPECT_THAT(said(), ::testing::HasSubstr("kerf resume " + path("killed")));
+  EXPECT_EQ(result("killed").at("partial"), true);
+  EXPECT_EQ(result("killed").at("exit_code"), 130);
 
   ASSERT_EQ(run({"resume", path("killed"), "--json"}), 0) << said();
   const json resumed = result("killed");
@@ -107,6 +110,52 @@ TEST_F(TwinResume, AKilledCalibrationGivesTheSameBitsAndRepeatsNothing) {
 
   for (const char* file : {"manifest.json", "reduction.json", "cuts/001.h5", "cuts/001.json"})
     EXPECT_TRUE(fs::exists(folder_ / "killed" / file)) << file;
+}
+
+TEST_F(TwinResume, AStopFileAndATimeLimitEndItCleanly) {
+  const pid_t child = launch({"calibrate", path("job.toml"), "-o", path("stopped")});
+  for (int i = 0; i < 6000 && runs_in(folder_ / "stopped") < 2; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  write_atomically(folder_ / "stopped/stop", "");
+  EXPECT_EQ(exit_of(child), 130);
+  EXPECT_THAT(said(), ::testing::HasSubstr("stopped by the file"));
+  EXPECT_THAT(said(), ::testing::HasSubstr("kerf resume " + path("stopped")));
+  EXPECT_EQ(result("stopped").at("partial"), true);
+
+  EXPECT_EQ(run({"resume", path("stopped"), "--max-time", "1ms"}), 2);
+  EXPECT_EQ(run({"resume", path("stopped"), "--max-time", "0.01s"}), 130);
+  EXPECT_THAT(said(), ::testing::HasSubstr("--max-time"));
+  EXPECT_EQ(run({"resume", path("stopped")}), 0);
+  EXPECT_FALSE(result("stopped").contains("partial"));
+}
+
+TEST_F(TwinResume, AFullDiskIsSaidAndLosesNothing) {
+  ASSERT_EQ(run({"calibrate", path("job.toml"), "-o", path("whole")}), 0) << said();
+  const pid_t child = launch({"calibrate", path("job.toml"), "-o", path("full")});
+  for (int i = 0; i < 6000 && runs_in(folder_ / "full") < 2; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  const rlimit little{100, RLIM_INFINITY};  // of bytes: no run fits
+  ASSERT_EQ(::prlimit(child, RLIMIT_FSIZE, &little, nullptr), 0);
+  EXPECT_EQ(exit_of(child), 3);
+  EXPECT_THAT(said(), ::testing::ContainsRegex("full/.*cannot write.*File too large"));
+  const std::size_t kept = runs_in(folder_ / "full");
+  EXPECT_GE(kept, 2u);
+
+  ASSERT_EQ(run({"resume", path("full")}), 0) << said();
+  EXPECT_EQ(result("full").at("parameters"), result("whole").at("parameters"));
+  EXPECT_EQ(runs_in(folder_ / "full"), result("whole").at("runs").get<std::size_t>());
+}
+
+TEST_F(TwinResume, AFolderThatCannotBeWrittenIsNamed) {
+  EXPECT_EQ(run({"calibrate", path("job.toml"), "-o", "/proc/calibration"}), 3);
+  EXPECT_THAT(said(), ::testing::HasSubstr("/proc/calibration: cannot create this folder"));
+  fs::create_directories(folder_ / "locked");
+  fs::permissions(folder_ / "locked", fs::perms::owner_read | fs::perms::owner_exec);
+  if (::access((folder_ / "locked").c_str(), W_OK) != 0) {  // root may write everywhere
+    EXPECT_EQ(run({"calibrate", path("job.toml"), "-o", path("locked")}), 3);
+    EXPECT_THAT(said(), ::testing::HasSubstr("Permission denied"));
+  }
+  fs::permissions(folder_ / "locked", fs::perms::owner_all);
 }
 
 TEST_F(TwinResume, AFolderBelongsToOneJobAndOneProcess) {

@@ -217,10 +217,21 @@ TEST(Resume, AnInterruptedRunIsNotRemembered) {
     if (left-- <= 0) throw inverse::Interrupted{};
     return testing::synthetic_cut(scene);
   };
-  EXPECT_THROW(testing::calibrate(job, folder / "journal.jsonl", stopping), inverse::Interrupted);
+  const auto stopped = testing::calibrate(job, folder / "journal.jsonl", stopping);
+  EXPECT_TRUE(stopped.calibration.partial);
+  EXPECT_EQ(stopped.calibration.exit_code, ExitCode::interrupted);
+  EXPECT_THAT(stopped.calibration.statement, ::testing::HasSubstr("stopped"));
   EXPECT_EQ(lines_of(folder / "journal.jsonl").size(), 11u);
   const auto resumed = testing::calibrate(job, folder / "journal.jsonl");
   EXPECT_EQ(resumed.simulated, resumed.runs - 10);
+  EXPECT_FALSE(resumed.calibration.partial);
+}
+
+TEST(Resume, BeforeTheFirstPointThereIsNothingToReport) {
+  const TemporaryFolder folder;
+  const inverse::Job job = twin(folder);
+  const auto stopping = [](const forward::Scene&) -> forward::CutResult { throw inverse::Interrupted{}; };
+  EXPECT_THROW(testing::calibrate(job, folder / "journal.jsonl", stopping), inverse::Interrupted);
 }
 
 }  // namespace

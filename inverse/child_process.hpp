@@ -1,0 +1,41 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace kerf::inverse {
+
+/// A command in a process group of its own: Ctrl-C does not reach it, but it dies with the thread that began it.
+class ChildProcess {
+ public:
+  /// Starts `words` (the first is looked for in the PATH) without input; both outputs are added to `output`. Throws
+  /// InputError when `output` cannot be opened, std::system_error when there is no process to be had. A command that
+  /// cannot be executed ends with code 127.
+  ChildProcess(const std::vector<std::string>& words, const std::filesystem::path& output);
+  /// Kills the group if it was not waited for.
+  ~ChildProcess();
+  ChildProcess(const ChildProcess&) = delete;
+  ChildProcess& operator=(const ChildProcess&) = delete;
+
+  enum class End { exited, killed_by_signal, timed_out, stopped };
+  struct Outcome {
+    End end;
+    int code;  ///< exit code or signal
+  };
+  /// Waits for the end, at most `seconds`, and no longer than until `stop` says so (asked ten times a second); then
+  /// the whole group is killed.
+  Outcome wait(std::optional<double> seconds, const std::function<bool()>& stop);
+
+ private:
+  Outcome reap();
+  void kill_group();
+
+  pid_t child_ = -1;
+};
+
+}  // namespace kerf::inverse

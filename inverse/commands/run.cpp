@@ -1,0 +1,31 @@
+#include <memory>
+#include <string>
+
+#include "forward/record/cut_file.hpp"
+#include "forward/scene/scene.hpp"
+#include "inverse/commands/commands.hpp"
+#include "inverse/run_record.hpp"
+#include "models/base/atomic_file.hpp"
+
+namespace kerf::commands {
+
+void add_run(CLI::App& app, int&) {
+  struct Options {
+    std::string scene, record, cut;
+  };
+  const auto options = std::make_shared<Options>();
+  auto* command = app.add_subcommand("run", "One run of a calibration, in a process of its own");
+  command->group("");  // for kerf itself and for the queue of a cluster
+  command->add_option("scene", options->scene, "scene file (TOML)")->required();
+  command->add_option("record", options->record, "what a calibration remembers of the run (JSON)")->required();
+  command->add_option("cut", options->cut, "the whole cut (HDF5)")->required();
+  command->callback([options] {
+    if (std::filesystem::exists(options->record)) return;  // a requeued job whose work is done
+    const Document document = Document::load(options->scene);
+    const forward::CutResult result = forward::run(forward::read_scene(document));
+    forward::write_cut(options->cut, document, result);
+    write_atomically(options->record, inverse::to_json(inverse::summarise(result)).dump() + "\n");
+  });
+}
+
+}  // namespace kerf::commands
