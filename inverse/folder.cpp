@@ -32,6 +32,7 @@ void apply(const JobOverride& override, Job& job) {
   if (override.max_runs > 0) job.budget.max_runs = override.max_runs;
   if (override.parallel > 0) job.budget.parallel = override.parallel;
   if (!override.backend.empty()) job.budget.backend = override.backend;
+  if (!override.shared_runs.empty()) job.budget.shared_runs = fs::absolute(override.shared_runs).string();
   if (!override.preset.empty()) forward::impose_preset(job.scene, override.preset, job.source.name);
 }
 
@@ -61,7 +62,8 @@ void write_inputs(const fs::path& folder, const Job& job, const std::string& pre
                       {"inputs", std::move(files)},
                       {"max_runs", job.budget.max_runs},
                       {"parallel", job.budget.parallel},
-                      {"backend", job.budget.backend}};
+                      {"backend", job.budget.backend},
+                      {"shared_runs", job.budget.shared_runs}};
   write_atomically(folder / manifest_name, manifest.dump(2) + "\n");
 }
 
@@ -139,7 +141,8 @@ Folder Folder::open(const fs::path& folder, const JobOverride& override, const s
   apply({.max_runs = manifest.at("max_runs").get<std::size_t>(),
          .parallel = manifest.at("parallel").get<int>(),
          .preset = manifest.at("preset").get<std::string>(),
-         .backend = manifest.value("backend", "")},
+         .backend = manifest.value("backend", ""),
+         .shared_runs = manifest.value("shared_runs", "")},
         job);
   apply(override, job);
   return {folder, std::move(job), open_journal(folder)};

@@ -13,8 +13,9 @@ namespace kerf::inverse {
 struct JobOverride {
   std::size_t max_runs = 0;
   int parallel = 0;
-  std::string preset = {};   ///< written over the scene (see forward/scene/preset.hpp)
-  std::string backend = {};  ///< see find_backend
+  std::string preset = {};       ///< written over the scene (see forward/scene/preset.hpp)
+  std::string backend = {};      ///< see find_backend
+  std::string shared_runs = {};  ///< a folder (see SharedRuns)
 };
 
 /// The folder a calibration lives in. It holds copies of all inputs, so that it can be resumed from itself alone:

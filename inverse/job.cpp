@@ -257,7 +257,8 @@ Job read_job(const fs::path& file, const std::string& name, const Locate& locate
                 .time_out = budget.number("time_out"),
                 .shortest_time_out = budget.number("shortest_time_out"),
                 .first_time_out = budget.number("first_time_out"),
-                .backend = budget.text("backend")};
+                .backend = budget.text("backend"),
+                .shared_runs = {}};
   const Values& optimiser = contents.at("optimiser");
   job.optimiser = {
       .method = optimiser.text("method"), .step = optimiser.number("step"), .noise = optimiser.number("noise")};

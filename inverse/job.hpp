@@ -66,6 +66,7 @@ struct Budget {
   double time_out = 10;         ///< of a run, in medians of the finished runs of its cut, but ...
   double shortest_time_out = 60, first_time_out = 3600;  ///< s; ... at least this, and that while none has finished
   std::string backend = "local";                         ///< see find_backend
+  std::string shared_runs;                               ///< a folder (see SharedRuns), given by the caller; or empty
 };
 
 struct OptimiserChoice {

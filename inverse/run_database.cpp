@@ -112,7 +112,11 @@ std::vector<RunRecord> RunDatabase::run(const std::vector<RunRequest>& requests)
     if (known_.contains(keys.back()) || !planned.insert(keys.back()).second) continue;
     try {
       forward::read_scene(request.scene);
-      tasks.push_back({keys.back(), &request});
+      const Task task{keys.back(), &request};
+      if (const std::optional<RunRecord> shared = shared_ ? shared_->find(task.key) : std::nullopt)
+        remember(task, *shared);
+      else
+        tasks.push_back(task);
     } catch (const InputError& error) {
       known_.emplace(keys.back(), refused(error.what()));
     }
@@ -182,6 +186,7 @@ void RunDatabase::finish(const Task& task, const RunRecord& record) {
   const std::lock_guard lock(finishing_);
   remember(task, record);
   ++simulated_;
+  if (shared_) shared_->keep(task.key, record);
   if (events_.run_ends) events_.run_ends(*task.request, record);
 }
 

@@ -12,6 +12,7 @@
 
 #include "inverse/journal.hpp"
 #include "inverse/run_record.hpp"
+#include "inverse/shared_runs.hpp"
 #include "models/base/document.hpp"
 
 namespace kerf::inverse {
@@ -52,6 +53,10 @@ class RunDatabase {
   /// finish influences nothing. Rethrows what a simulator throws, after the other runs under way have ended.
   std::vector<RunRecord> run(const std::vector<RunRequest>& requests);
 
+  /// From now on runs come from `folder` if they are there, and go there. They are journaled all the same, so that a
+  /// resumed calibration does not depend on it.
+  void share(const std::filesystem::path& folder) { shared_.emplace(folder); }
+
   /// Distinct runs asked for so far, and what that number would become with `requests`: the count a budget limits.
   /// It does not depend on how many came from the journal.
   std::size_t runs() const { return asked_.size(); }
@@ -84,6 +89,7 @@ class RunDatabase {
   Journal& journal_;
   std::string code_;
   Runner runner_;
+  std::optional<SharedRuns> shared_;
   int parallel_;
   RunEvents events_;
   std::map<std::string, RunRecord> known_;

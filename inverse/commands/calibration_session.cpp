@@ -164,6 +164,7 @@ ExitCode finish(inverse::Folder& folder, const std::string& code, Show show, con
              lines.run_ends(request, record);
            }});
   running = &database;
+  if (!job.budget.shared_runs.empty()) database.share(job.budget.shared_runs);
   const inverse::Calibration calibration =
       inverse::calibrate(job, database, [&](const inverse::TraceEntry& entry) { lines.step(entry); });
   inverse::CalibrationCost cost{.runs = database.runs(), .failed_runs = database.failed()};

@@ -31,6 +31,7 @@ void add_resume(CLI::App& app, int& exit_code) {
       ->add_option("--max-time", options->max_seconds,
                    "stop a calibration cleanly after this time, s or with a unit: 2h")
       ->transform(CLI::AsNumberWithUnit(time_units()));
+  command->add_option("--runs", options->changes.shared_runs, "folder of runs shared by jobs: none is made twice");
   command->add_option("--backend", options->changes.backend, "where runs of a calibration live: local or slurm")
       ->check(CLI::IsMember(inverse::backend_names()));
   command->add_flag("--json", options->json, "print the result as JSON");

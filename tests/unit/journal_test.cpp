@@ -158,6 +158,31 @@ TEST(Resume, ReplaysFromAnyLineToTheSameBits) {
   }
 }
 
+TEST(Resume, RunsAreSharedBetweenJobs) {
+  const TemporaryFolder folder;
+  const inverse::Job job = twin(folder);
+  const auto alone = testing::calibrate(job, folder / "alone.jsonl");
+  const auto sharing = [&](const std::string& journal_file) {
+    inverse::Journal journal(folder / journal_file);
+    inverse::RunDatabase database(journal, "test", testing::synthetic_cut, 2);
+    database.share(folder / "shared");
+    auto calibration = inverse::calibrate(job, database);
+    return testing::Outcome{std::move(calibration), database.runs(), database.simulated()};
+  };
+  const auto first = sharing("first.jsonl"), second = sharing("second.jsonl");
+  EXPECT_EQ(first.simulated, alone.runs);
+  EXPECT_EQ(second.simulated, 0u) << "a run was made twice";
+  for (const auto* shared : {&first, &second}) {
+    EXPECT_EQ(bits_of(shared->calibration), bits_of(alone.calibration));
+    EXPECT_EQ(shared->runs, alone.runs);
+  }
+  // What came from elsewhere is journaled, so that a resumed calibration needs nothing but its own folder.
+  std::filesystem::remove_all(folder / "shared");
+  const auto resumed = testing::calibrate(job, folder / "second.jsonl");
+  EXPECT_EQ(resumed.simulated, 0u);
+  EXPECT_EQ(bits_of(resumed.calibration), bits_of(alone.calibration));
+}
+
 TEST(Resume, TheOrderOfParallelRunsDoesNotMatter) {
   const TemporaryFolder folder;
   const inverse::Job job = twin(folder);
