@@ -45,6 +45,7 @@ int run(int argc, char** argv) {
   kerf::commands::add_calibrate(app, exit_code);
   kerf::commands::add_resume(app, exit_code);
   kerf::commands::add_run(app, exit_code);
+  kerf::commands::add_evaluate(app, exit_code);
   kerf::commands::add_report(app, exit_code);
 
   try {
