@@ -113,6 +113,7 @@ BodiesResult run(const Scene& scene, const std::function<bool(std::size_t, doubl
   BodiesResult result;
   State state = lay_out(scene);
   Joint joint(state, scene);
+  const std::vector<Stage> stages = plan(scene, joint);
   Recorder recorder(state);
   for (const Body& body : state.bodies) result.particles += body.points.size();
   const double spacing = scene.length / readings_per_length;
@@ -128,7 +129,7 @@ BodiesResult run(const Scene& scene, const std::function<bool(std::size_t, doubl
     while (state.breakdown.empty()) {
       const double towards = stroke.ramp > 0.0 ? 1.0 - std::exp(-state.step / stroke.ramp) : 1.0;
       state.piston.speed += towards * (stroke.speed - state.piston.speed);
-      advance(state, scene, stroke, joint);
+      for (const Stage& stage : stages) stage.apply(state, stroke);
       recorder.add_step(state);
       result.particle_steps += static_cast<std::int64_t>(result.particles);
       if (result.steps == 0) result.first_step_temperature_change = totals(state).temperature - start_temperature;

@@ -62,6 +62,15 @@ std::vector<Block> declare() {
            {number("normal", "MPa/mm", 0, 1e15, "D_n where the faces part"),
             number("compressive", "MPa/mm", 0, 1e15, "D_n where they overlap; absent: as where they part").if_given(),
             number("tangential", "MPa/mm", 0, 1e15, "D_t")}},
+      {.path = "conduction",
+       .variant = "",
+       .meaning =
+           "heat flows within bodies, and through walls that are given a temperature; absent: it stays where it is",
+       .parameters = {number("conductivity", "W/(m K)", 1e-6, 1e9, "thermal conductivity k"),
+                      number("left", "K", 1.0, 1e5, "temperature of this wall").if_given(),
+                      number("right", "K", 1.0, 1e5, "temperature of the piston").if_given(),
+                      number("bottom", "K", 1.0, 1e5, "temperature of this wall").if_given(),
+                      number("top", "K", 1.0, 1e5, "temperature of this wall").if_given()}},
       {.path = "pic_damping",
        .variant = "",
        .meaning = "FLIP velocities blended towards PIC; damps where velocity gradients are high",
@@ -169,6 +178,7 @@ Scene read_scene(const Document& document) {
               .bodies = {},
               .strokes = {},
               .interface = {},
+              .conduction = {},
               .pic_damping = {},
               .measures = {}};
   for (const std::string& name : top_level.list("measures"))
@@ -204,6 +214,22 @@ Scene read_scene(const Document& document) {
     scene.interface = {.normal = normal,
                        .compressive = values.has("compressive") ? values.number("compressive") : normal,
                        .tangential = values.number("tangential")};
+  }
+  if (contents.has("conduction")) {
+    const Values& values = contents.at("conduction");
+    if (!thermal)
+      throw InputError(
+          fmt::format("{}: [conduction] needs a body with a temperature (allowed: ideal_gas, ideal_rubber, "
+                      "mie_gruneisen)",
+                      values.where("conductivity")));
+    scene.conduction = {.conductivity = values.number("conductivity"), .wall_temperature = {}};
+    for (std::size_t edge = 0; edge < edge_names.size(); ++edge) {
+      if (!values.has(edge_names[edge])) continue;
+      if (scene.walls[edge] == Wall::open)
+        throw InputError(fmt::format("{}: the {} edge of the [box] is open; only a wall has a temperature",
+                                     values.where(edge_names[edge]), edge_names[edge]));
+      scene.conduction->wall_temperature[edge] = values.number(edge_names[edge]);
+    }
   }
   if (contents.has("pic_damping")) scene.pic_damping = {.rate = contents.at("pic_damping").number("rate")};
   return scene;

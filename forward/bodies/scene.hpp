@@ -51,6 +51,12 @@ struct PicDamping {
   double rate;
 };
 
+/// Heat flows within and between bodies, and through walls that have a temperature.
+struct Conduction {
+  double conductivity;                                    ///< k, N/(s K)
+  std::array<std::optional<double>, 4> wall_temperature;  ///< K, by Edge
+};
+
 /// What to read off the run: see bodies/measures.
 enum class Measure { cycle, rubber, expansion, modulus };
 inline constexpr std::array<const char*, 4> measure_names{"cycle", "rubber", "expansion", "modulus"};
@@ -64,6 +70,7 @@ struct Scene {
   std::vector<BodyPlan> bodies;
   std::vector<Stroke> strokes;
   std::optional<Interface> interface;
+  std::optional<Conduction> conduction;
   std::optional<PicDamping> pic_damping;
   std::vector<Measure> measures;
   bool is_thermal() const;

@@ -19,6 +19,7 @@ struct Points {
   std::vector<std::vector<double>> memory;                         ///< what the law keeps, see laws::Memory
   std::vector<double> temperature;                                 ///< K; only of thermal laws
   std::size_t size() const { return x.size(); }
+  static constexpr std::size_t mechanical_numbers = 15;  ///< kept for every point, before memory and temperature
 };
 
 struct Body {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "forward/bodies/conduction.hpp"
 #include "forward/bodies/walls.hpp"
 #include "forward/mpm/stencil.hpp"
 
@@ -199,23 +200,49 @@ void find_stress(State& state) {
     });
 }
 
-void advance(State& state, const Scene& scene, const Stroke& stroke, Joint& joint) {
-  gather_momentum(state, scene);
-  joint.share_velocity(state);
-  for (Body& body : state.bodies) {
-    mirror_velocity(state, scene, body.field);
-    std::visit([&](const auto& law) { strain_points(state, body, law, stroke); }, body.law);
-  }
-  state.piston.force = 0.0;
-  for (Body& body : state.bodies) change_velocity(state, scene, body.field);
-  joint.join(state);
-  for (Body& body : state.bodies) {
-    mirror_change(state, scene, body.field);
-    move_points(state, scene, body);
-  }
-  state.piston.work += state.piston.force * state.piston.speed * state.step;
-  state.piston.position += state.piston.speed * state.step;
-  state.time += state.step;
+std::vector<Stage> plan(const Scene& scene, Joint& joint) {
+  std::vector<Stage> stages;
+  const auto add = [&](std::string name, std::string does, std::function<void(State&, const Stroke&)> apply) {
+    stages.push_back({std::move(name), std::move(does), std::move(apply)});
+  };
+  add("project", "grid velocities p/m of every body under the walls, in the reference configuration",
+      [&scene](State& state, const Stroke&) { gather_momentum(state, scene); });
+  if (scene.bodies.size() > 1)
+    add("share", scene.interface ? "the interface slows what parts the bodies" : "bodies share one velocity",
+        [&joint](State& state, const Stroke&) { joint.share_velocity(state); });
+  add("strain",
+      scene.is_thermal() ? "deformation, heat of the stroke, temperature, stress, internal forces"
+                         : "deformation, stress, internal forces",
+      [&scene](State& state, const Stroke& stroke) {
+        for (Body& body : state.bodies) {
+          mirror_velocity(state, scene, body.field);
+          std::visit([&](const auto& law) { strain_points(state, body, law, stroke); }, body.law);
+        }
+      });
+  if (scene.conduction)
+    add("conduct", "heat flows down the temperature's gradient and through walls that have a temperature",
+        [conductor = Conductor(scene)](State& state, const Stroke&) mutable { conductor(state); });
+  add("accelerate", "changes of the grid velocities under the walls, and the piston's force",
+      [&scene](State& state, const Stroke&) {
+        state.piston.force = 0.0;
+        for (Body& body : state.bodies) change_velocity(state, scene, body.field);
+      });
+  if (scene.bodies.size() > 1)
+    add("join", scene.interface ? "springs of the interface, implicit" : "bodies share one change of velocity",
+        [&joint](State& state, const Stroke&) { joint.join(state); });
+  add("advance", scene.pic_damping ? "points move (FLIP with a share of PIC, booked as damping)" : "points move (FLIP)",
+      [&scene](State& state, const Stroke&) {
+        for (Body& body : state.bodies) {
+          mirror_change(state, scene, body.field);
+          move_points(state, scene, body);
+        }
+      });
+  add("piston", "the piston moves and its work is booked", [](State& state, const Stroke&) {
+    state.piston.work += state.piston.force * state.piston.speed * state.step;
+    state.piston.position += state.piston.speed * state.step;
+    state.time += state.step;
+  });
+  return stages;
 }
 
 double stable_step(const State& state, const Scene& scene) {
@@ -229,7 +256,8 @@ double stable_step(const State& state, const Scene& scene) {
       const Lanes transits = speed * (along > across ? along : across);
       for (std::size_t i = 0; i < lane_count; ++i) most = std::max(most, transits[i]);
     });
-  return scene.courant_number / most;
+  const double step = scene.courant_number / most;
+  return scene.conduction ? std::min(step, longest_conduction_step(state, scene)) : step;
 }
 
 Totals totals(const State& state) {

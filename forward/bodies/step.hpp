@@ -1,13 +1,22 @@
 #pragma once
 
+#include <functional>
+
 #include "forward/bodies/interface.hpp"
 #include "forward/bodies/state.hpp"
 
 namespace kerf::forward::bodies {
 
-/// One explicit step, stresses first: particles to grid, strains and heat, forces, new velocities under walls and
-/// joints, particles moved (FLIP, blended with PIC where the scene damps).
-void advance(State& state, const Scene& scene, const Stroke& stroke, Joint& joint);
+/// One thing done in every step. A scene without the effect has no such stage.
+struct Stage {
+  std::string name;
+  std::string does;  ///< one plain-English sentence
+  std::function<void(State&, const Stroke&)> apply;
+};
+
+/// The ordered stages of one explicit step, stresses first: built from the blocks that the scene has. `scene` and
+/// `joint` must outlive them.
+std::vector<Stage> plan(const Scene& scene, Joint& joint);
 
 /// The stress of every body for its deformation and temperature as they are.
 void find_stress(State& state);

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "forward/bodies/step.hpp"
 #include "forward/mpm/window.hpp"
 #include "forward/plan.hpp"
 #include "forward/record/cut_file.hpp"
@@ -229,7 +230,49 @@ void print_preset(const Document& document) {
   fmt::print("\n");
 }
 
+/// An experiment on bodies instead of a cut: its step, its memory, and what it leaves out.
+void explain_bodies(const Document& document, bool json) {
+  namespace bodies = forward::bodies;
+  const bodies::Scene scene = bodies::read_scene(document);
+  bodies::State state = bodies::lay_out(scene);
+  bodies::Joint joint(state, scene);
+  const std::vector<bodies::Stage> stages = bodies::plan(scene, joint);
+  const Contents contents = document.read(bodies::scene_blocks());
+  Json step = Json::array(), all_bodies = Json::array(), absent = Json::array();
+  for (const bodies::Stage& stage : stages) step.push_back({{"stage", stage.name}, {"does", stage.does}});
+  for (const bodies::Body& body : state.bodies) {
+    const std::size_t numbers =
+        bodies::Points::mechanical_numbers + body.points.memory.size() + (body.is_thermal() ? 1 : 0);
+    all_bodies.push_back(
+        {{"law", std::visit([](const auto& law) { return std::decay_t<decltype(law)>::name(); }, body.law)},
+         {"points", body.points.size()},
+         {"bytes_per_point", sizeof(double) * numbers}});
+  }
+  for (const Block& block : bodies::scene_blocks())
+    if (!block.required && !contents.has(block.path))
+      absent.push_back({{"block", block.path}, {"meaning", block.meaning}});
+  const Json whole{{"title", scene.title},
+                   {"step", step},
+                   {"bodies", all_bodies},
+                   {"time_step_s", state.step},
+                   {"not_simulated", absent}};
+  if (json) return fmt::print("{}\n", whole.dump(2));
+  fmt::print("{}\n\nEvery step ({:.3g} s at the start)\n", scene.title, state.step);
+  for (const auto& line : step)
+    fmt::print("  {:<12}{}\n", line.at("stage").get<std::string>(), line.at("does").get<std::string>());
+  fmt::print("\nBodies\n");
+  for (const auto& body : all_bodies)
+    fmt::print("  {}: {} points of {} bytes\n", body.at("law").get<std::string>(), body.at("points").get<int>(),
+               body.at("bytes_per_point").get<int>());
+  fmt::print("\nNot simulated, because the scene does not ask for it\n");
+  for (const auto& one : absent)
+    fmt::print("  {:<14}{}\n", one.at("block").get<std::string>(), one.at("meaning").get<std::string>());
+}
+
 void explain(const std::string& file, bool json) {
+  if (std::filesystem::path(file).extension() != ".h5")
+    if (const Document document = Document::load(file); forward::bodies::has_bodies(document))
+      return explain_bodies(document, json);
   Explanation all = explanation_of(file);
   if (json) return fmt::print("{}\n", as_json(all).dump(2));
   print_cut(all.scene);
