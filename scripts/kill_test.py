@@ -23,7 +23,7 @@ ERRORS = 0.02  # of the measured forces, relative
 SIMULATOR = """#!/usr/bin/env python3
 import hashlib, os, pathlib, signal, sys, time
 scene, record = sys.argv[1:3]
-text = "".join(line for line in open(scene) if "courant_number" not in line and "[resolution]" not in line)
+text = "".join(line for line in open(scene) if not line.startswith("resolution"))  # the second attempt fails too
 luck = int(hashlib.sha256(({seed!r} + text).encode()).hexdigest()[:8], 16) / 2**32
 way = int(luck / {share} * 4) if luck < {share} else None
 with open({log!r}, "a") as log:
@@ -108,13 +108,14 @@ def kill(kerf, folder, kills, seed):
         different += result["parameters"] != whole["parameters"] or result["runs"] != whole["runs"]
         repeated += len(keys(folder, name)) - len(set(keys(folder, name)))
         repeated += len(keys(folder, name)) - whole["runs"]
+        print(f"{done} kills, {calibrations} calibrations, {different} different, {repeated} repeated", file=sys.stderr)
     return {"kills": done, "calibrations": calibrations, "runs_each": whole["runs"], "different_estimates": different,
             "repeated_runs": repeated}, different == repeated == 0
 
 
 def fail(kerf, folder, share, seed):
     noise = random.Random(seed)
-    budget = 'max_runs = 200\nfailing_share = 0.5\nshortest_time_out = "2 s"\nfirst_time_out = "10 s"\n'
+    budget = 'max_runs = 200\nfailing_share = 0.5\nshortest_time_out = "2 s"\nfirst_time_out = "30 s"\n'
     cuts = [(depth, rake) for rake in (20, 30) for depth in (0.5, 0.65, 0.8)]
     write_inputs(kerf, folder, cuts, noise=noise)
     job = folder / "job.toml"
