@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <csignal>
+#include <cstdio>
 #include <exception>
 #include <string>
 #include <vector>
@@ -69,10 +70,10 @@ int main(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const kerf::InputError& error) {
-    fmt::print(stderr, "{}\n", error.what());
+    std::fputs(fmt::format("{}\n", error.what()).c_str(), stderr);  // fmt::print throws when a log's disk is full, too
     return static_cast<int>(error.code());
   } catch (const std::exception& error) {
-    fmt::print(stderr, "kerf: internal error: {}\n", error.what());
+    std::fputs(fmt::format("kerf: internal error: {}\n", error.what()).c_str(), stderr);
     return static_cast<int>(kerf::ExitCode::internal_error);
   }
 }

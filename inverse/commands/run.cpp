@@ -23,8 +23,9 @@ void add_run(CLI::App& app, int&) {
     if (std::filesystem::exists(options->record)) return;  // a requeued job whose work is done
     const Document document = Document::load(options->scene);
     const forward::CutResult result = forward::run(forward::read_scene(document));
-    forward::write_cut(options->cut, document, result);
+    // The record first: HDF5 does not survive a full disk, and a run is known by its record.
     write_atomically(options->record, inverse::to_json(inverse::summarise(result)).dump() + "\n");
+    forward::write_cut(options->cut, document, result);
   });
 }
 
