@@ -1,0 +1,109 @@
+// Scenes of bodies: what is wrong is said with its place, and what a scene does not name has no stage and no byte.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "forward/bodies/step.hpp"
+#include "models/base/error.hpp"
+#include "tests/unit/run_kerf.hpp"
+
+namespace kerf::forward::bodies {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+std::string shipped_text(const std::string& name) {
+  return content_of(std::string(KERF_SOURCE_DIR "/data/scenes/") + name + ".toml");
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+
+std::string complaint(const std::string& text) {
+  try {
+    read_scene(Document::parse(text, "bodies.toml"));
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.code(), ExitCode::bad_data);
+    return error.what();
+  }
+  return "no complaint";
+}
+
+TEST(BodiesScene, BadInputIsSaidWithItsPlace) {
+  const std::string gas = shipped_text("carnot_gas");
+  EXPECT_THAT(complaint(replaced(gas, "\"600 K\"\nheat_ratio", "\"-600 K\"\nheat_ratio")), HasSubstr("reference_temp"));
+  EXPECT_THAT(complaint(replaced(gas, "heat_ratio", "heat_ration")), HasSubstr("did you mean \"heat_ratio\""));
+  EXPECT_THAT(complaint(replaced(gas, "ideal_gas", "ideal_gaz")), HasSubstr("did you mean \"ideal_gas\""));
+  EXPECT_THAT(complaint(replaced(gas, "until_stretch = 2", "until_stretch = 0.5")), HasSubstr("cannot reach"));
+  EXPECT_THAT(complaint(replaced(gas, "until_stretch = 2", "")), HasSubstr("never ends"));
+  EXPECT_THAT(complaint(replaced(gas, "temperature = \"600 K\"\npiston", "piston")), HasSubstr("lacks the key \"temp"));
+  EXPECT_THAT(complaint(replaced(gas, "\"adiabatic\"", "\"none\"")), HasSubstr("a body has a temperature"));
+  EXPECT_THAT(complaint(replaced(gas, "cell = \"1 mm\"", "cell = \"3 mm\"")), HasSubstr("less than four cells"));
+  EXPECT_THAT(complaint(replaced(gas, "[[body]]", "[[body]]\nwidth = \"11 mm\"")), HasSubstr("does not fit"));
+  EXPECT_THAT(complaint(gas + "\n[interface]\nnormal = \"1 MPa/mm\"\ntangential = \"1 MPa/mm\"\n"),
+              HasSubstr("joins two bodies"));
+  const std::string bar = shipped_text("interface_bar");
+  EXPECT_THAT(complaint(replaced(bar, "normal = \"10 MPa", "normal = \"-10 MPa")), HasSubstr("normal"));
+  EXPECT_THAT(complaint(bar + "\n[conduction]\nconductivity = \"1 W/(m K)\"\n"),
+              HasSubstr("a body with a temperature"));
+}
+
+std::vector<std::string> stages_of(const std::string& text) {
+  const Scene scene = read_scene(Document::parse(text, "bodies.toml"));
+  State state = lay_out(scene);
+  Joint joint(state, scene);
+  std::vector<std::string> names;
+  for (const Stage& stage : plan(scene, joint)) names.push_back(stage.name);
+  return names;
+}
+
+TEST(BodiesScene, AnAbsentEffectHasNoStageAndNoByte) {
+  EXPECT_THAT(stages_of(shipped_text("carnot_gas")),
+              ElementsAre("project", "strain", "accelerate", "advance", "piston"));
+  EXPECT_THAT(stages_of(shipped_text("interface_bar")),
+              ElementsAre("project", "share", "strain", "accelerate", "join", "advance", "piston"));
+  EXPECT_THAT(stages_of(shipped_text("carnot_gas") + "\n[conduction]\nconductivity = \"1 W/(m K)\"\n"),
+              ElementsAre("project", "strain", "conduct", "accelerate", "advance", "piston"));
+  const State bar = lay_out(read_scene(Document::parse(shipped_text("interface_bar"), "bar.toml")));
+  EXPECT_EQ(bar.bodies[0].points.temperature.capacity(), 0u);
+  EXPECT_EQ(bar.bodies[0].points.memory.size(), 1u);
+  EXPECT_EQ(bar.bodies[0].field.filtered.capacity(), 0u);
+}
+
+TEST(BodiesScene, BodiesFillTheirRectangles) {
+  const State bar = lay_out(read_scene(Document::parse(shipped_text("interface_bar"), "bar.toml")));
+  for (const Body& body : bar.bodies) {
+    double volume = 0;
+    for (const double part : body.points.volume) volume += part;
+    EXPECT_NEAR(volume, 200.0, 1e-9);
+  }
+}
+
+TEST(BodiesScene, SimulateKeepsAndPrintsWhatTheSceneIsFor) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::path(::testing::TempDir()) / "kerf_bodies";
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  const ProcessOutput run = run_kerf("simulate '" KERF_SOURCE_DIR "/data/scenes/interface_bar.toml' --json -o '" +
+                                         (folder / "bar.json").string() + "'",
+                                     folder);
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  const auto printed = nlohmann::json::parse(run.out), kept = nlohmann::json::parse(content_of(folder / "bar.json"));
+  EXPECT_EQ(printed, kept);
+  EXPECT_LT(printed.at("results").at("effective_modulus_error").get<double>(), 5e-3);
+  EXPECT_EQ(run_kerf("check '" KERF_SOURCE_DIR "/data/scenes/carnot_gas.toml'", folder).exit_code, 0);
+  EXPECT_THAT(run_kerf("explain '" KERF_SOURCE_DIR "/data/scenes/carnot_gas.toml'", folder).out,
+              HasSubstr("Not simulated"));
+  fs::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace kerf::forward::bodies

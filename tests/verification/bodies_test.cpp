@@ -1,0 +1,144 @@
+// Experiments on bodies against closed forms.
+#include "forward/bodies/run.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <numbers>
+#include <sstream>
+
+#include "forward/bodies/step.hpp"
+
+namespace kerf::forward::bodies {
+namespace {
+
+std::string text_of(const std::string& name) {
+  std::ostringstream text;
+  text << std::ifstream(std::string(KERF_SOURCE_DIR "/data/scenes/") + name + ".toml").rdbuf();
+  return text.str();
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+
+BodiesResult result_of(const std::string& text) {
+  return run(read_scene(Document::parse(text, "scene.toml")));
+}
+
+double number(const BodiesResult& result, const char* name) {
+  return result.measures.at(name).get<double>();
+}
+
+TEST(Bodies, AnIdealGasReachesCarnotsEfficiency) {
+  const BodiesResult result = result_of(text_of("carnot_gas"));
+  ASSERT_TRUE(result.accepted);
+  EXPECT_NEAR(number(result, "efficiency"), 0.5, 1e-3);
+  EXPECT_LT(number(result, "pv_gamma_error"), 1e-4);
+  EXPECT_LT(number(result, "net_entropy_ratio"), 1e-3);
+  EXPECT_NEAR(number(result, "closing_temperature_error"), 0.0, 1e-4);
+  // Heat of the hot stroke: p_0 V_0 ln 2, a little more because the piston turns after the stroke's end.
+  EXPECT_NEAR(number(result, "heat_taken"), 40 * std::numbers::ln2, 0.01);
+}
+
+TEST(Bodies, TungstenCoolsOnExpansionAndGivesCarnotsEfficiency) {
+  const BodiesResult result = result_of(text_of("carnot_tungsten"));
+  ASSERT_TRUE(result.accepted);
+  EXPECT_LT(number(result, "first_step_temperature_change"), 0.0);
+  EXPECT_NEAR(number(result, "efficiency") / (1.0 / 300), 1.0, 0.02);
+  EXPECT_LT(number(result, "net_entropy_ratio"), 1e-3);
+}
+
+TEST(Bodies, AdiabaticExpansionOfTungstenCoolsAsItsGruneisenConstantSays) {
+  std::string text = text_of("carnot_tungsten");
+  text = text.substr(0, text.find("[[stroke]]")) +
+         "[[stroke]]\nheat = \"adiabatic\"\npiston_speed = \"0.1 m/s\"\nramp = \"0.05 ms\"\nuntil_stretch = 1.001\n"
+         "[pic_damping]\nrate = 0.02\n";
+  text = replaced(text, "\"cycle\", ", "");
+  const BodiesResult elastic = result_of(text);
+  ASSERT_TRUE(elastic.accepted);
+  const double stretch = elastic.history.back().length / 10.0;
+  EXPECT_NEAR(elastic.history.back().temperature / (300 * std::exp(-1.54 * (stretch - 1))), 1.0, 1e-6);
+  // Yielding always heats.
+  const BodiesResult plastic = result_of(replaced(text, "shear_modulus", "yield_stress = \"100 MPa\"\nshear_modulus"));
+  ASSERT_TRUE(plastic.accepted);
+  EXPECT_GT(plastic.history.back().temperature, elastic.history.back().temperature + 0.01);
+}
+
+TEST(Bodies, IdealRubberGivesAllWorkAsHeatAndWarmsWhenPulledFast) {
+  const BodiesResult result = result_of(text_of("rubber_gough"));
+  ASSERT_TRUE(result.accepted);
+  EXPECT_NEAR(number(result, "heat_over_work"), 1.0, 2e-3);
+  EXPECT_NEAR(number(result, "entropy_over_heat"), 1.0, 1e-6);
+  EXPECT_LT(number(result, "adiabatic_temperature_error"), 5e-3);
+  EXPECT_NEAR(number(result, "adiabatic_over_isothermal_modulus"),
+              number(result, "adiabatic_over_isothermal_modulus_closed_form"), 5e-4);
+}
+
+TEST(Bodies, ABarIsAsStiffAsItsHalvesAndTheirGlue) {
+  const std::string text = text_of("interface_bar");
+  // From soft to a million times E/cell.
+  for (const double D : {1.0, 1e1, 1e2, 1e3, 1e5, 1e9}) {
+    const BodiesResult result = result_of(replaced(text, "normal = \"10 MPa", fmt::format("normal = \"{} MPa", D)));
+    ASSERT_TRUE(result.accepted) << D;
+    EXPECT_LT(number(result, "effective_modulus_error"), 5e-3) << D;
+  }
+  const std::size_t interface = text.find("[interface]");
+  const BodiesResult bonded = result_of(text.substr(0, interface) + text.substr(text.find("[[stroke]]")));
+  EXPECT_NEAR(number(bonded, "effective_modulus") / 1000, 1.0, 5e-3);
+}
+
+TEST(Bodies, CompressedFacesHaveTheirOwnStiffness) {
+  std::string text = text_of("interface_bar");
+  text = replaced(text, "[interface]", "[interface]\ncompressive = \"1000 MPa/mm\"");
+  text = replaced(text, "1.0002", "0.9998");
+  text = replaced(text, "\"0.02 m/s\"", "\"-0.02 m/s\"");
+  const BodiesResult result = result_of(text);
+  ASSERT_TRUE(result.accepted);
+  EXPECT_NEAR(number(result, "effective_modulus"), 1 / (1e-3 + 1e-5), 5);
+}
+
+/// A slab between two walls at 300 K, at 400 K when it begins: mean temperature after t = 0.05 L^2/kappa.
+double conduction_error(int cells) {
+  const double kappa = 1e6;  // mm^2/s
+  const double time = 0.05 * 100 / kappa;
+  const BodiesResult result = result_of(
+      fmt::format("title = \"slab\"\nmeasures = []\n[box]\nlength = \"10 mm\"\nheight = \"8 mm\"\ncell = \"{} mm\"\n"
+                  "courant_number = 0.1\n[[body]]\n"
+                  "law = \"mie_gruneisen\"\ndensity = \"19224 kg/m^3\"\nsound_speed = \"4029 m/s\"\nslope = 1.237\n"
+                  "gruneisen = 0\nspecific_heat = \"134 J/(kg K)\"\nshear_modulus = \"160 GPa\"\nreference_temperature "
+                  "= \"400 K\"\n"
+                  "[conduction]\nconductivity = \"{} W/(m K)\"\nleft = \"300 K\"\nright = \"300 K\"\n"
+                  "[[stroke]]\nheat = \"adiabatic\"\npiston_speed = \"0 m/s\"\nlongest = \"{} ms\"\n",
+                  10.0 / cells, 19224 * 134.0, 1e3 * time));
+  EXPECT_TRUE(result.accepted);
+  const Reading& end = result.history.back();
+  EXPECT_NEAR(end.heat / end.internal, 1.0, 1e-9);
+  double share = 0;
+  for (int n = 1; n < 200; n += 2) {
+    const double k = n * std::numbers::pi;
+    share += 8 / (k * k) * std::exp(-k * k * kappa * end.time / 100);
+  }
+  return std::abs((end.temperature - 300) / 100 - share);
+}
+
+TEST(Bodies, HeatConductionFollowsTheSeriesWithSecondOrder) {
+  const double coarse = conduction_error(8), middle = conduction_error(16), fine = conduction_error(32);
+  EXPECT_LT(fine, 1e-3);
+  EXPECT_GT(std::log2(coarse / middle), 1.7);
+  EXPECT_GT(std::log2(middle / fine), 1.7);
+}
+
+TEST(Bodies, AnImpossibleStrokeEndsInARefusal) {
+  const BodiesResult result =
+      result_of(replaced(text_of("carnot_gas"), "until_temperature = \"300 K\"", "until_temperature = \"700 K\""));
+  EXPECT_FALSE(result.accepted);
+  ASSERT_FALSE(result.refusals.empty());
+}
+
+}  // namespace
+}  // namespace kerf::forward::bodies
