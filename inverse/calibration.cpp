@@ -58,6 +58,7 @@ class Calibrator {
     Evaluation first = evaluate_start(start.point);
     if (objective_.failing_share(first) > job_.budget.failing_share) return give_up(std::move(first));
     misfit_.include_simulation_errors(first);
+    if (job_.optimiser.audit) audit(first);
 
     // The differences at the end, from which the errors come, are paid for in advance.
     const std::size_t reserve = job_.cuts.size() * job_.free.size();
@@ -89,6 +90,23 @@ class Calibrator {
     result_.exit_code = ExitCode::interrupted;
     result_.statement = state(job_, result_);
     return std::move(result_);
+  }
+
+  /// Measures what the simulation resolves, if that takes no more than a quarter of the budget.
+  void audit(const Evaluation& first) {
+    const std::size_t all = job_.budget.max_runs;
+    objective_.limit(first.runs.size() + all / 4);
+    try {
+      result_.audit = audit_noise(objective_, first);
+      OptimiserChoice choice = job_.optimiser;
+      if (!choice.step_given) choice.step = result_.audit->step;
+      if (!choice.noise_given) choice.noise = result_.audit->noise;
+      objective_.choose(choice);
+      objective_.trace("noise audit", first);
+    } catch (const BudgetSpent&) {
+      result_.audit.reset();
+    }
+    objective_.limit(all);
   }
 
   /// The start, or the middle of the ranges when too many cuts fail there.

@@ -5,6 +5,7 @@
 
 #include "inverse/identifiability.hpp"
 #include "inverse/job.hpp"
+#include "inverse/noise_audit.hpp"
 #include "inverse/optimiser.hpp"
 #include "inverse/run_database.hpp"
 #include "models/base/error.hpp"
@@ -29,9 +30,10 @@ struct Calibration {
   std::vector<Fit> alternatives;  ///< the other edge assumptions, fitted to the same runs and some more
   std::vector<TraceEntry> trace;
   Eigen::VectorXd start;
-  std::string start_origin;  ///< where the start values come from, in words
-  double failing_share = 0;  ///< of the cuts at the estimate
-  bool partial = false;      ///< stopped by the user: the best point so far, usually without errors
+  std::string start_origin;         ///< where the start values come from, in words
+  std::optional<NoiseAudit> audit;  ///< none: the job did not ask for it or the budget did not cover it
+  double failing_share = 0;         ///< of the cuts at the estimate
+  bool partial = false;             ///< stopped by the user: the best point so far, usually without errors
   ExitCode exit_code = ExitCode::success;
   std::string statement;  ///< what is and what is not determined, in plain English
 };

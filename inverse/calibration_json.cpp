@@ -121,6 +121,33 @@ void add_fit(Json& json, const Fit& fit) {
   json["parameters"] = parameters(known);
 }
 
+Json noise_audit(const NoiseAudit& audit, const OptimiserChoice& choice) {
+  Json rows = Json::array();
+  const auto or_null = [](const std::optional<double>& value) { return value ? number(*value) : Json(nullptr); };
+  for (const ObservableNoise& entry : audit.observables) {
+    Json row{{"cut", entry.cut},
+             {"observable", observable_names[static_cast<std::size_t>(entry.observable)]},
+             {"difference_table", nullptr},
+             {"difference_order", nullptr},
+             {"jitter", or_null(entry.jitter)},
+             {"curvature", or_null(entry.curvature)},
+             {"noise", number(entry.noise)},
+             {"step", or_null(entry.step)}};
+    if (entry.table && entry.table->outcome == DifferenceTable::Outcome::found) {
+      row["difference_table"] = number(entry.table->noise);
+      row["difference_order"] = entry.table->order;
+    }
+    rows.push_back(std::move(row));
+  }
+  return {{"noise", number(audit.noise)},
+          {"step", number(audit.step)},
+          {"used_noise", number(choice.noise_given ? choice.noise : audit.noise)},
+          {"used_step", number(choice.step_given ? choice.step : audit.step)},
+          {"runs", audit.runs},
+          {"note", audit.note},
+          {"observables", std::move(rows)}};
+}
+
 Json identifiability(const Identifiability& known) {
   Json names = Json::array(), values = Json::array();
   for (const ParameterEstimate& p : known.parameters) names.push_back(p.name);
@@ -163,6 +190,7 @@ Json calibration_json(const Job& job, const Calibration& calibration, const Cali
   result["failed_runs"] = cost.failed_runs;
   result["record_runs"] = cost.record_runs;
   result["wall_s"] = cost.wall_seconds;
+  result["noise_audit"] = calibration.audit ? noise_audit(*calibration.audit, job.optimiser) : Json(nullptr);
   result["identifiability"] = identifiability(fit.identifiability);
   result["alternatives"] = Json::array();
   for (const Fit& other : calibration.alternatives) add_fit(result["alternatives"].emplace_back(Json::object()), other);

@@ -175,6 +175,38 @@ void require_readable_scenes(const Job& job) {
     }
 }
 
+/// Changes written PATH=VALUE; without any, half the cells through the chip.
+Coarse read_coarse(const Contents& contents, const Document& scene) {
+  const std::vector<Block>& blocks = forward::scene_blocks();
+  Coarse coarse{.closed_form = false, .scene = scene};
+  const bool given = contents.has("coarse");
+  if (given) coarse.closed_form = contents.at("coarse").text("model") == "closed_form";
+  if (!given || !contents.at("coarse").has("changes")) {
+    const Contents all = forward::with_preset(scene).read(blocks);
+    const double cells = all.at("resolution").number("cells_through_chip");
+    coarse.scene.add_table("resolution", blocks);
+    coarse.scene.set_number("resolution.cells_through_chip", std::min(cells, std::max(3.0, std::floor(cells / 2))),
+                            blocks);
+    return coarse;
+  }
+  const Values& values = contents.at("coarse");
+  for (const std::string& change : values.list("changes")) {
+    const std::size_t sign = std::min(change.find('='), change.size());
+    const std::string path = change.substr(0, sign);
+    const Parameter& parameter = Document::find_number(path, blocks, values.where("changes"));
+    try {
+      const Quantity quantity = split_quantity(sign < change.size() ? change.substr(sign + 1) : "");
+      coarse.scene.set_number(path, in_range(quantity.number, quantity.unit.empty() ? "1" : quantity.unit, parameter),
+                              blocks);
+    } catch (const std::invalid_argument& error) {
+      throw InputError(fmt::format("{}: [coarse] changes: \"{}\" {}; write PATH=VALUE", values.where("changes"), change,
+                                   error.what()));
+    }
+  }
+  forward::read_scene(coarse.scene);
+  return coarse;
+}
+
 InputFile load(const std::string& name, const Locate& locate) {
   return {.name = name, .content = read_file(locate(name))};
 }
@@ -226,7 +258,8 @@ Job read_job(const fs::path& file, const std::string& name, const Locate& locate
           .observables = {},
           .edge_force = {},
           .budget = {},
-          .optimiser = {}};
+          .optimiser = {},
+          .coarse = {.closed_form = false, .scene = base}};
   job.ties = read_ties(contents, base, job.free);
   for (std::size_t k = 0; k < observable_count; ++k) {
     const std::vector<std::string>& wanted = top.list("observables");
@@ -260,8 +293,14 @@ Job read_job(const fs::path& file, const std::string& name, const Locate& locate
                 .backend = budget.text("backend"),
                 .shared_runs = {}};
   const Values& optimiser = contents.at("optimiser");
-  job.optimiser = {
-      .method = optimiser.text("method"), .step = optimiser.number("step"), .noise = optimiser.number("noise")};
+  job.optimiser.method = optimiser.text("method");
+  job.optimiser.step_given = optimiser.has("step");
+  job.optimiser.noise_given = optimiser.has("noise");
+  if (optimiser.has("step")) job.optimiser.step = optimiser.number("step");
+  if (optimiser.has("noise")) job.optimiser.noise = optimiser.number("noise");
+  job.optimiser.audit =
+      optimiser.has("audit") ? optimiser.flag("audit") : !optimiser.has("step") || !optimiser.has("noise");
+  job.coarse = read_coarse(contents, base);
   if (contents.has("discrepancy")) job.discrepancy = contents.at("discrepancy").number("relative");
   require_readable_scenes(job);
   return job;

@@ -73,6 +73,14 @@ struct OptimiserChoice {
   std::string method = "gauss_newton";
   double step = 0.04;    ///< of a difference, in search coordinates (ln(value), or the share of a linear range)
   double noise = 0.001;  ///< relative roughness of a simulated force; smaller decreases are not believed
+  bool audit = false;    ///< measure both before the search; what the job gives itself stays
+  bool step_given = false, noise_given = false;
+};
+
+/// What a search of several fidelities looks at first: the scene with cheaper numbers, or a closed form.
+struct Coarse {
+  bool closed_form = false;
+  Document scene;
 };
 
 /// A file the job depends on: its name as the job writes it, and its bytes.
@@ -95,6 +103,7 @@ struct Job {
   std::optional<EdgeForce> edge_force;
   Budget budget;
   OptimiserChoice optimiser;
+  Coarse coarse;
   double discrepancy = 0;  ///< relative error that the model is granted in every observable
 
   /// SHA-256 of everything that decides the answer.

@@ -83,12 +83,27 @@ std::vector<Block> declare() {
        .variant = "",
        .meaning = "how the minimum is looked for",
        .parameters = {text("method", "the search", optimiser_names()).or_else("gauss_newton"),
-                      number("step", "1", 1e-8, 0.5, "difference step: change of ln(value), or share of a linear range")
-                          .or_else("0.04"),
+                      number("step", "1", 1e-8, 0.5,
+                             "difference step: change of ln(value), or share of a linear range; the audit finds it, "
+                             "without one it is 0.04")
+                          .if_given(),
                       number("noise", "1", 0, 0.5,
-                             "relative roughness of a simulated force; smaller gains are not believed")
-                          .or_else("0.001")},
+                             "relative roughness of a simulated force; smaller gains are not believed; the audit finds "
+                             "it, without one it is 0.001")
+                          .if_given(),
+                      flag("audit", "measure the simulation's noise first; true unless step and noise are both given")
+                          .if_given()},
        .required = true},
+      {.path = "coarse",
+       .variant = "",
+       .meaning = "what a search by several fidelities looks at first; without this block: half the cells",
+       .parameters = {text("model", "who answers: the simulation, or Williams' minimised shear plane at no cost",
+                           {"simulation", "closed_form"})
+                          .or_else("simulation"),
+                      list("changes",
+                           "numbers of the scene in a coarse run, written PATH=VALUE, such as "
+                           "\"resolution.cells_through_chip=3\"; without any half the cells")
+                          .if_given()}},
       {.path = "discrepancy",
        .variant = "",
        .meaning = "error granted to the model itself, added to the measured standard errors",

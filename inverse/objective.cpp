@@ -2,31 +2,47 @@
 
 #include <fmt/format.h>
 
+#include "forward/scene/scene.hpp"
 #include "models/base/units.hpp"
 
 namespace kerf::inverse {
 
 Objective::Objective(const Job& job, const ParameterSpace& space, Misfit& misfit, RunDatabase& database,
                      std::size_t max_runs)
-    : job_(job), space_(space), misfit_(misfit), database_(database), max_runs_(max_runs) {}
+    : job_(job), space_(space), misfit_(misfit), database_(database), max_runs_(max_runs), choice_(job.optimiser) {}
 
-RunRequest Objective::request(const Eigen::VectorXd& point, std::size_t cut) const {
-  std::string label = fmt::format("depth {:.4g} mm", job_.cuts[cut].depth);
+RunRequest Objective::request(const Probe& probe) const {
+  const auto& [point, cut, jitter] = probe;
+  std::string label = fmt::format("{}depth {:.4g} mm", fidelity, job_.cuts[cut].depth);
   for (Eigen::Index j = 0; j < space_.dimension(); ++j) {
     const FreeParameter& parameter = space_.parameters()[static_cast<std::size_t>(j)];
     label +=
         fmt::format(", {} {:.4g}{}{}", parameter.name, space_.value(j, point[j]) / consistent_units_in(parameter.unit),
                     parameter.unit == "1" ? "" : " ", parameter.unit == "1" ? "" : parameter.unit);
   }
-  return {.scene = space_.scene(point, job_.cuts[cut]), .label = std::move(label), .cut = cut};
+  Document scene = space_.scene(point, job_.cuts[cut]);
+  if (jitter != 0) {
+    const double notch = scene.read(forward::scene_blocks()).at("cut").number("notch");
+    scene.set_number("cut.notch", notch + jitter, forward::scene_blocks());
+    label += fmt::format(", begun {:.3f} depths farther on", jitter);
+  }
+  return {.scene = std::move(scene), .label = std::move(label), .cut = cut};
 }
 
 std::vector<RunRecord> Objective::simulate(const std::vector<Probe>& probes) {
   std::vector<RunRequest> requests;
   requests.reserve(probes.size());
-  for (const Probe& probe : probes) requests.push_back(request(probe.point, probe.cut));
-  if (database_.runs_with(requests) > max_runs_) throw BudgetSpent{};
-  return database_.run(requests);
+  for (const Probe& probe : probes) requests.push_back(request(probe));
+  std::vector<RunRecord> records;
+  if (closed_form) {
+    for (const RunRequest& request : requests) records.push_back(closed_form(request.scene));
+  } else {
+    if (database_.runs_with(requests) > max_runs_) throw BudgetSpent{};
+    records = database_.run(requests);
+  }
+  if (correct)
+    for (std::size_t p = 0; p < probes.size(); ++p) correct(probes[p], records[p]);
+  return records;
 }
 
 std::vector<Evaluation> Objective::evaluate(const std::vector<Eigen::VectorXd>& points) {
@@ -62,6 +78,12 @@ void Objective::trace(std::string what, const Evaluation& at) {
                     .point = at.point,
                     .edge_force = residuals.edge_force,
                     .failed_cuts = cuts() - count(at.usable)});
+  if (on_trace) on_trace(trace_.back());
+}
+
+void Objective::pass_on(const std::string& prefix, TraceEntry entry) {
+  entry.what = prefix + entry.what;
+  trace_.push_back(std::move(entry));
   if (on_trace) on_trace(trace_.back());
 }
 

@@ -33,9 +33,14 @@ class Objective {
   const ParameterSpace& space() const { return space_; }
   Misfit& misfit() { return misfit_; }
   const Misfit& misfit() const { return misfit_; }
+  const Job& job() const { return job_; }
+  RunDatabase& database() { return database_; }
   const Budget& budget() const { return job_.budget; }
-  const OptimiserChoice& choice() const { return job_.optimiser; }
+  /// As the job says, or as the noise audit found.
+  const OptimiserChoice& choice() const { return choice_; }
+  void choose(const OptimiserChoice& choice) { choice_ = choice; }
   std::size_t cuts() const { return job_.cuts.size(); }
+  double depth(std::size_t cut) const { return job_.cuts[cut].depth; }
 
   /// All cuts at every point, as one batch. Throws BudgetSpent before the first run of a batch it cannot pay.
   std::vector<Evaluation> evaluate(const std::vector<Eigen::VectorXd>& points);
@@ -45,11 +50,20 @@ class Objective {
   struct Probe {
     Eigen::VectorXd point;
     std::size_t cut;
+    double jitter = 0;  ///< the crack's start is moved by this many depths of cut, which a steady force cannot feel
   };
   std::vector<RunRecord> simulate(const std::vector<Probe>& probes);
 
+  /// A cheaper answer than the simulation; such runs are neither journaled nor counted.
+  std::function<RunRecord(const Document& scene)> closed_form;
+  /// Changes every answer, as the correction of a coarse model does. The database keeps what was simulated.
+  std::function<void(const Probe&, RunRecord&)> correct;
+  std::string fidelity;  ///< begins the label of every run
+
   /// Remembers a step of the search and reports it as progress.
   void trace(std::string what, const Evaluation& at);
+  /// Remembers a step that another objective on the same database took.
+  void pass_on(const std::string& prefix, TraceEntry entry);
   const std::vector<TraceEntry>& trace() const { return trace_; }
   /// The traced point of the smallest misfit among those where the fewest cuts failed, if any was traced.
   const std::optional<Evaluation>& best() const { return best_; }
@@ -57,18 +71,20 @@ class Objective {
 
   /// Changes what may be spent in all.
   void limit(std::size_t max_runs) { max_runs_ = max_runs; }
+  std::size_t limit() const { return max_runs_; }
 
   /// Share of the cuts that failed.
   double failing_share(const Evaluation& evaluation) const;
 
  private:
-  RunRequest request(const Eigen::VectorXd& point, std::size_t cut) const;
+  RunRequest request(const Probe& probe) const;
 
   const Job& job_;
   const ParameterSpace& space_;
   Misfit& misfit_;
   RunDatabase& database_;
   std::size_t max_runs_;
+  OptimiserChoice choice_;
   std::vector<TraceEntry> trace_;
   std::optional<Evaluation> best_;
 };

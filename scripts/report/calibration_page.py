@@ -247,6 +247,10 @@ def _search(page, calibration):
         entry["parameters"] = {PLAIN.get(name, name): value for name, value in entry["parameters"].items()}
     section.figure(fit_figures.trace(entries, [PLAIN.get(name, name) for name in names]),
                    html("{} steps. Start: {}.", len(entries), calibration.result.get("start_origin", "as the job says")))
+    audit = calibration.result.get("noise_audit")
+    if audit:
+        section.text(html("Noise audit ({} runs): {}. Used: noise {}, step {}.", integer(audit["runs"]),
+                          audit["note"], number(audit["used_noise"]), number(audit["used_step"])))
 
 
 def _cost(page, calibration):

@@ -90,7 +90,8 @@ TEST(Calibration, StopsAtItsBudget) {
 
 TEST(Calibration, TheClosedFormIsAGoodStart) {
   const TemporaryFolder folder;
-  const auto outcome = calibrate(write_job(folder), folder / "journal.jsonl");
+  const auto outcome =
+      calibrate(write_job(folder, std::string(job_text) + "[optimiser]\naudit = false\n"), folder / "journal.jsonl");
   // The synthetic cut is the closed form, so the start is the answer and only one set of differences is paid.
   EXPECT_THAT(outcome.calibration.start_origin, ::testing::HasSubstr("yield_stress from the closed form"));
   EXPECT_EQ(outcome.runs, 4u + 12u);
