@@ -40,6 +40,17 @@ class LocalModel {
 
   /// Makes the model agree with `other` by the smallest change of the slopes.
   void learn(const Evaluation& other);
+  /// The same slopes about a run of another fidelity: never fresh.
+  void borrow_for(const Evaluation& other) {
+    base_ = other;
+    fresh_ = false;
+  }
+  /// d ln F_c, d F_t or d ln(chip ratio) by a search coordinate: cuts x parameters.
+  const Eigen::MatrixXd& slopes(Eigen::Index observable) const { return slopes_[static_cast<std::size_t>(observable)]; }
+  static bool is_logarithmic(Eigen::Index observable) {
+    return observable != static_cast<Eigen::Index>(Observable::F_t);
+  }
+
   /// The same slopes about another simulated point.
   void move_to(const Evaluation& other);
 
@@ -48,9 +59,6 @@ class LocalModel {
 
  private:
   explicit LocalModel(Evaluation base);
-  static bool is_logarithmic(Eigen::Index observable) {
-    return observable != static_cast<Eigen::Index>(Observable::F_t);
-  }
   /// Change of one transformed observable of `cut` between the base and a run.
   double change(Eigen::Index cut, Eigen::Index observable, double simulated) const;
 

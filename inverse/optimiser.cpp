@@ -9,6 +9,8 @@ const std::vector<Optimiser>& optimisers() {
   static const std::vector<Optimiser> all{
       {"gauss_newton", "bounded Gauss-Newton in a trust region; differences and trials in parallel, few runs",
        gauss_newton},
+      {"multi_fidelity", "Gauss-Newton on coarse runs ([coarse]) corrected to fine ones; last steps on fine runs only",
+       multi_fidelity},
       {"levenberg_marquardt", "Ceres' bounded Levenberg-Marquardt with parallel differences at every step",
        levenberg_marquardt},
       {"bobyqa", "NLopt's BOBYQA: quadratic models of chi^2, no differences", bobyqa},

@@ -28,6 +28,8 @@ struct Optimiser {
 SearchResult gauss_newton(Objective& objective, const Evaluation& start);
 /// Continues from slopes that are known already, such as those of another misfit of the same cuts.
 SearchResult gauss_newton(Objective& objective, const LocalModel& model);
+/// Coarse runs corrected to the fine ones do the search; fine runs check it, take the last steps and give the slopes.
+SearchResult multi_fidelity(Objective& objective, const Evaluation& start);
 SearchResult levenberg_marquardt(Objective& objective, const Evaluation& start);
 SearchResult bobyqa(Objective& objective, const Evaluation& start);
 SearchResult sbplx(Objective& objective, const Evaluation& start);

@@ -50,9 +50,92 @@ TEST_P(EveryOptimiser, RecoversATwin) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, EveryOptimiser,
-                         ::testing::Values(Method{"gauss_newton", 100, 0.01}, Method{"levenberg_marquardt", 400, 0.01},
-                                           Method{"bobyqa", 2000, 0.05}, Method{"sbplx", 6000, 0.05},
-                                           Method{"crs2", 12000, 0.1}));
+                         ::testing::Values(Method{"gauss_newton", 100, 0.01}, Method{"multi_fidelity", 200, 0.01},
+                                           Method{"levenberg_marquardt", 400, 0.01}, Method{"bobyqa", 2000, 0.05},
+                                           Method{"sbplx", 6000, 0.05}, Method{"crs2", 12000, 0.1}));
+
+/// Counts runs by fidelity; coarse ones (three cells) are off by a tenth, more at high flow stress.
+struct TwoFidelities {
+  std::shared_ptr<std::atomic<int>> fine = std::make_shared<std::atomic<int>>(0),
+                                    coarse = std::make_shared<std::atomic<int>>(0);
+  forward::CutResult operator()(const forward::Scene& scene) const {
+    forward::CutResult result = synthetic_cut(scene);
+    if (scene.resolution.cells_through_chip >= 4) {
+      ++*fine;
+      return result;
+    }
+    ++*coarse;
+    const double bias = 0.9 * std::pow(std::sqrt(3.0) * laws::shear_yield(scene.material) / 60, 0.1);
+    result.F_c.value *= bias;
+    result.F_t.value *= 0.95 * bias;
+    result.chip_ratio.value *= 1.05;
+    return result;
+  }
+};
+
+TEST(MultiFidelity, SearchesOnCoarseRunsAndAnswersOnFineOnes) {
+  const TemporaryFolder folder;
+  const std::string job = with_starts(job_text) + "[budget]\nmax_runs = 400\n[optimiser]\naudit = false\n";
+  const TwoFidelities one, two;
+  const auto plain = calibrate(write_job(folder, job), folder / "one.jsonl", one);
+  const auto mapped = calibrate(write_job(folder, job + "method = \"multi_fidelity\"\n"), folder / "two.jsonl", two);
+  EXPECT_TRUE(mapped.calibration.fit.converged) << mapped.calibration.fit.reason;
+  EXPECT_NEAR(value(mapped.calibration, "yield_stress"), 60, 0.6);
+  EXPECT_NEAR(value(mapped.calibration, "toughness"), 2, 0.02);
+  EXPECT_EQ(*one.coarse, 0);
+  EXPECT_GT(*two.coarse, 12);
+  EXPECT_LE(*two.fine, 4 * 8) << "start, two or three checks and one set of differences";
+  EXPECT_LT(*two.fine, *one.fine);
+  for (const inverse::RunRecord& run : mapped.calibration.fit.at.runs)
+    EXPECT_TRUE(run.accepted) << "the answer rests on fine runs";
+}
+
+TEST(MultiFidelity, AClosedFormCostsNoCoarseRuns) {
+  const TemporaryFolder folder;
+  const TwoFidelities simulate;
+  const std::string job = with_starts(job_text) +
+                          "[budget]\nmax_runs = 400\n[optimiser]\naudit = false\nmethod = \"multi_fidelity\"\n"
+                          "[coarse]\nmodel = \"closed_form\"\n";
+  const auto outcome = calibrate(write_job(folder, job), folder / "j.jsonl", simulate);
+  EXPECT_TRUE(outcome.calibration.fit.converged) << outcome.calibration.fit.reason;
+  EXPECT_NEAR(value(outcome.calibration, "toughness"), 2, 0.02);
+  EXPECT_EQ(*simulate.coarse, 0);
+  // The synthetic cut is the closed form: start, its minimum, and the differences there.
+  EXPECT_LE(*simulate.fine, 4 + 4 + 12 + 8);
+}
+
+TEST(MultiFidelity, ACoarseModelOnAnotherBranchIsNotMapped) {
+  const TemporaryFolder folder;
+  const auto simulate = [](const forward::Scene& scene) {
+    forward::CutResult result = synthetic_cut(scene);
+    if (scene.resolution.cells_through_chip < 4) {
+      result.branch = forward::Branch::bending;
+      result.F_c.value *= 0.5;
+    }
+    return result;
+  };
+  const std::string job =
+      with_starts(job_text) + "[budget]\nmax_runs = 400\n[optimiser]\nmethod = \"multi_fidelity\"\n";
+  const auto outcome = calibrate(write_job(folder, job), folder / "j.jsonl", simulate);
+  EXPECT_TRUE(outcome.calibration.fit.converged) << outcome.calibration.fit.reason;
+  EXPECT_NEAR(value(outcome.calibration, "toughness"), 2, 0.02);
+}
+
+TEST(MultiFidelity, RefusesAChangeThatIsNone) {
+  const TemporaryFolder folder;
+  const auto message = [&](const std::string& change) {
+    try {
+      write_job(folder, std::string(job_text) + "[coarse]\nchanges = [\"" + change + "\"]\n");
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_THAT(message("resolution.cells_through_ship=3"), ::testing::HasSubstr("cells_through_chip"));
+  EXPECT_THAT(message("resolution.cells_through_chip"), ::testing::HasSubstr("PATH=VALUE"));
+  EXPECT_THAT(message("resolution.cells_through_chip=1"), ::testing::HasSubstr("cells_through_chip"));
+  EXPECT_EQ(message("resolution.cells_through_chip=3"), "");
+}
 
 TEST(Optimiser, NamesAreUnique) {
   std::set<std::string> names;

@@ -1,0 +1,125 @@
+#include <cmath>
+#include <memory>
+
+#include "forward/scene/scene.hpp"
+#include "inverse/fidelity_correction.hpp"
+#include "inverse/optimiser.hpp"
+#include "models/chip/shear_minimised.hpp"
+
+namespace kerf::inverse {
+namespace {
+
+constexpr int most_corrections = 8;
+
+/// Williams' minimised shear plane in the place of a simulation; refused where it has no solution or no such material.
+RunRecord shear_plane(const Document& document) {
+  const forward::Scene scene = forward::read_scene(document);
+  const double yield_stress = std::sqrt(3.0) * laws::shear_yield(scene.material);
+  if (!std::isfinite(yield_stress) || !scene.cohesive.mode_I)
+    return refused("the closed form wants a yield stress and a toughness");
+  const double toughness = scene.cohesive.mode_I->toughness(), depth = scene.cut.depth, rake = scene.tool.rake;
+  const auto plane = chip::shear_minimised(depth, rake, yield_stress, toughness,
+                                           scene.friction ? scene.friction->coefficient : 0.0, 0.0);
+  if (plane.radicand < 0) return refused("the closed form has no solution here");
+  RunRecord record;
+  record.F_c.value = plane.forces.F_c;
+  record.F_t.value = plane.forces.F_t;
+  const double cot_phi = (plane.forces.F_c - toughness) / (yield_stress * depth);  // Eq. (4) of shear_minimised.hpp
+  record.chip_ratio.value = std::cos(rake) * cot_phi + std::sin(rake);
+  record.accepted = record.steady = true;
+  return record;
+}
+
+/// The job with its coarse scene, and its own objective on the same database.
+class CoarseModel {
+ public:
+  CoarseModel(Objective& fine, Misfit& misfit)
+      : job_(coarse(fine.job())), space_(job_), objective_(job_, space_, misfit, fine.database(), fine.limit()) {
+    objective_.choose(fine.choice());
+    objective_.fidelity = "coarse, ";
+    if (job_.coarse.closed_form) objective_.closed_form = shear_plane;
+    objective_.on_trace = [&fine](const TraceEntry& entry) { fine.pass_on("coarse: ", entry); };
+  }
+
+  Objective& objective() { return objective_; }
+
+  /// What is simulated, without the correction; a closed form knows no branches and takes those of `fine`.
+  Evaluation raw_like(const Evaluation& fine) {
+    const auto kept = std::exchange(objective_.correct, nullptr);
+    if (job_.coarse.closed_form)
+      objective_.correct = [&](const Objective::Probe& probe, RunRecord& run) {
+        run.branch = fine.runs[probe.cut].branch;
+      };
+    Evaluation raw;
+    try {
+      raw = objective_.evaluate(fine.point);
+    } catch (...) {
+      objective_.correct = kept;
+      throw;
+    }
+    objective_.correct = kept;
+    return raw;
+  }
+
+  void correct_by(const FidelityCorrection& correction, const Evaluation& fine) {
+    objective_.correct = [&correction, &fine, this](const Objective::Probe& probe, RunRecord& run) {
+      if (job_.coarse.closed_form) run.branch = fine.runs[probe.cut].branch;
+      correction.apply(probe.point, probe.cut, run);
+    };
+  }
+
+ private:
+  static Job coarse(Job job) {
+    job.scene = job.coarse.scene;
+    // The fine runs decide what is left: a coarse step that gains less than they would is not worth its runs.
+    job.budget.tolerance *= 5;
+    return job;
+  }
+
+  Job job_;
+  ParameterSpace space_;
+  Objective objective_;
+};
+
+}  // namespace
+
+SearchResult multi_fidelity(Objective& objective, const Evaluation& start) {
+  Misfit misfit = objective.misfit();
+  CoarseModel coarse(objective, misfit);
+  Evaluation best = start;
+  std::optional<LocalModel> slopes;
+  try {
+    FidelityCorrection correction(start, coarse.raw_like(start));
+    coarse.correct_by(correction, best);
+    int refused = 0;
+    for (int i = 0; i < most_corrections && refused < 2; ++i) {
+      const Evaluation from = coarse.objective().evaluate(best.point);
+      if (coarse.objective().failing_share(from) > objective.budget().failing_share) break;
+      if (slopes) slopes->borrow_for(from);
+      const SearchResult found =
+          slopes ? gauss_newton(coarse.objective(), *slopes) : gauss_newton(coarse.objective(), from);
+      if (found.model) slopes = found.model;
+      const double promise = misfit.chi2(from, both(from.usable, found.best.usable)) -
+                             misfit.chi2(found.best, both(from.usable, found.best.usable));
+      const double worthwhile =
+          std::max(objective.budget().tolerance, misfit.chi2_noise(best, objective.choice().noise));
+      if (promise <= worthwhile) break;
+      const Evaluation trial = objective.evaluate(found.best.point);
+      const CutMask common = both(best.usable, trial.usable);
+      const bool enough = static_cast<double>(count(common)) >=
+                          (1 - objective.budget().failing_share) * static_cast<double>(objective.cuts());
+      const bool better = enough && misfit.chi2(best, common) - misfit.chi2(trial, common) > worthwhile;
+      correction.learn(trial, coarse.raw_like(trial), better);
+      refused = better ? 0 : refused + 1;
+      if (better) best = trial;
+      objective.trace(better ? "fine run at the coarse minimum" : "fine run at the coarse minimum refused", trial);
+    }
+  } catch (const BudgetSpent&) {
+    return {.best = best, .converged = false, .reason = "the budget of runs is spent", .model = {}};
+  }
+  if (!slopes) return gauss_newton(objective, best);
+  slopes->borrow_for(best);
+  return gauss_newton(objective, *slopes);
+}
+
+}  // namespace kerf::inverse
