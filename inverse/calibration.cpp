@@ -25,6 +25,7 @@ Fit conclude(const Objective& objective, SearchResult found) {
           .at = std::move(found.best),
           .residuals = {},
           .identifiability = {},
+          .at_jump = found.model ? found.model->at_jump() : CutMask(),
           .has_slopes = found.model.has_value(),
           .converged = found.converged,
           .reason = std::move(found.reason)};

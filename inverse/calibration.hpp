@@ -19,6 +19,7 @@ struct Fit {
   Evaluation at;
   Residuals residuals;
   Identifiability identifiability;
+  CutMask at_jump;          ///< cuts within a difference step of another branch; empty without slopes
   bool has_slopes = false;  ///< false: the budget did not allow the differences that errors need
   bool converged = false;
   std::string reason;

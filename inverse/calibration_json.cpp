@@ -82,6 +82,7 @@ Json cut(const Job& job, const Fit& fit, const Misfit& misfit, std::size_t index
   json["usable"] = bool(fit.at.usable[index]);
   json["refusals"] = run.refusals;
   json["branch"] = forward::name(run.branch);
+  json["at_branch_jump"] = index < fit.at_jump.size() && fit.at_jump[index];
   json["mode_I_fraction"] = number(run.mode_I_fraction);
   json["fracture_energy_ratio"] = number(run.fracture_energy_ratio);
   json["crack_lead_mm"] = number(run.crack_lead.value);

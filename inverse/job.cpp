@@ -294,6 +294,7 @@ Job read_job(const fs::path& file, const std::string& name, const Locate& locate
                 .shared_runs = {}};
   const Values& optimiser = contents.at("optimiser");
   job.optimiser.method = optimiser.text("method");
+  job.optimiser.central = optimiser.flag("central");
   job.optimiser.step_given = optimiser.has("step");
   job.optimiser.noise_given = optimiser.has("noise");
   if (optimiser.has("step")) job.optimiser.step = optimiser.number("step");

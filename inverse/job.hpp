@@ -73,6 +73,7 @@ struct OptimiserChoice {
   std::string method = "gauss_newton";
   double step = 0.04;    ///< of a difference, in search coordinates (ln(value), or the share of a linear range)
   double noise = 0.001;  ///< relative roughness of a simulated force; smaller decreases are not believed
+  bool central = false;  ///< two-sided differences
   bool audit = false;    ///< measure both before the search; what the job gives itself stays
   bool step_given = false, noise_given = false;
 };

@@ -91,6 +91,7 @@ std::vector<Block> declare() {
                              "relative roughness of a simulated force; smaller gains are not believed; the audit finds "
                              "it, without one it is 0.001")
                           .if_given(),
+                      flag("central", "two-sided differences, for twice the runs").or_else("false"),
                       flag("audit", "measure the simulation's noise first; true unless step and noise are both given")
                           .if_given()},
        .required = true},

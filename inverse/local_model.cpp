@@ -4,7 +4,8 @@
 
 namespace kerf::inverse {
 
-LocalModel::LocalModel(Evaluation base) : base_(std::move(base)), has_slopes_(base_.usable.size(), true) {
+LocalModel::LocalModel(Evaluation base)
+    : base_(std::move(base)), has_slopes_(base_.usable.size(), true), at_jump_(base_.usable.size(), false) {
   slopes_.fill(Eigen::MatrixXd::Zero(base_.simulated.rows(), base_.point.size()));
 }
 
@@ -16,50 +17,56 @@ double LocalModel::change(Eigen::Index cut, Eigen::Index observable, double simu
 LocalModel LocalModel::by_differences(Objective& objective, const Evaluation& base) {
   const ParameterSpace& space = objective.space();
   LocalModel model(base);
-  struct Missing {
+  struct Wanted {
     std::size_t cut;
     Eigen::Index parameter;
+    int sides = 0;         ///< differences taken so far
+    bool crossed = false;  ///< the branch changed: shorter steps may stay on it
   };
-  std::vector<Missing> missing;
+  std::vector<Wanted> wanted;
   for (Eigen::Index j = 0; j < space.dimension(); ++j)
     for (std::size_t cut = 0; cut < objective.cuts(); ++cut)
-      if (base.usable[cut]) missing.push_back({cut, j});
+      if (base.usable[cut]) wanted.push_back({.cut = cut, .parameter = j});
 
-  for (const double factor : {1.0, -1.0, 0.5, -0.5}) {
+  for (const double factor : {1.0, -1.0, 0.5, -0.5, 0.25, -0.25, 0.125, -0.125}) {
+    const bool whole = std::abs(factor) == 1, shrunk = std::abs(factor) < 0.5;
+    const int sides = whole && objective.choice().central ? 2 : 1;
     std::vector<Objective::Probe> probes;
-    std::vector<Missing> probed, still_missing;
-    for (const Missing& wanted : missing) {
-      const Eigen::Index j = wanted.parameter;
+    std::vector<Wanted*> probed;
+    for (Wanted& slope : wanted) {
+      if (slope.sides >= sides || (shrunk && !slope.crossed)) continue;
+      const Eigen::Index j = slope.parameter;
       const double range = space.upper()[j] - space.lower()[j];
       const double step = std::min(objective.choice().step, 0.4 * range);
       const bool room_above = base.point[j] + step <= space.upper()[j];
       Eigen::VectorXd point = base.point;
       point[j] += (room_above ? 1 : -1) * factor * step;
-      if (point[j] < space.lower()[j] || point[j] > space.upper()[j]) {
-        still_missing.push_back(wanted);
-        continue;
-      }
-      probes.push_back({std::move(point), wanted.cut});
-      probed.push_back(wanted);
+      if (point[j] < space.lower()[j] || point[j] > space.upper()[j]) continue;
+      probes.push_back({std::move(point), slope.cut});
+      probed.push_back(&slope);
     }
+    if (probes.empty()) continue;
     const std::vector<RunRecord> runs = objective.simulate(probes);
     for (std::size_t p = 0; p < runs.size(); ++p) {
-      const auto [cut, j] = probed[p];
-      if (!objective.misfit().is_usable(cut, runs[p]) || runs[p].branch != base.runs[cut].branch) {
-        still_missing.push_back(probed[p]);
+      Wanted& slope = *probed[p];
+      if (!objective.misfit().is_usable(slope.cut, runs[p])) continue;
+      if (runs[p].branch != base.runs[slope.cut].branch) {
+        slope.crossed = model.at_jump_[slope.cut] = true;
         continue;
       }
-      const auto row = static_cast<Eigen::Index>(cut);
+      const auto row = static_cast<Eigen::Index>(slope.cut);
+      const Eigen::Index j = slope.parameter;
       const Eigen::RowVectorXd simulated = observations(runs[p]);
-      for (Eigen::Index k = 0; k < simulated.size(); ++k)
-        if (objective.misfit().weights()(row, k) != 0)
-          model.slopes_[static_cast<std::size_t>(k)](row, j) =
-              model.change(row, k, simulated[k]) / (probes[p].point[j] - base.point[j]);
+      for (Eigen::Index k = 0; k < simulated.size(); ++k) {
+        if (objective.misfit().weights()(row, k) == 0) continue;
+        double& mean = model.slopes_[static_cast<std::size_t>(k)](row, j);
+        mean += (model.change(row, k, simulated[k]) / (probes[p].point[j] - base.point[j]) - mean) / (slope.sides + 1);
+      }
+      ++slope.sides;
     }
-    missing = std::move(still_missing);
-    if (missing.empty()) break;
   }
-  for (const Missing& left : missing) model.has_slopes_[left.cut] = false;
+  for (const Wanted& slope : wanted)
+    if (slope.sides == 0) model.has_slopes_[slope.cut] = false;
   return model;
 }
 

@@ -14,9 +14,9 @@ namespace kerf::inverse {
 /// never spans two branches of the cut (touching, bending), where slopes mean nothing.
 class LocalModel {
  public:
-  /// Slopes by one-sided differences inside the bounds, all as one batch. A run that fails or lands on another branch
-  /// is tried again on the other side and at half the step; a cut with a slope still missing is left out of the model.
-  /// Throws BudgetSpent.
+  /// Slopes by one-sided differences inside the bounds (two-sided ones if the job wants them central), all as one
+  /// batch. A run that fails or lands on another branch is tried again on the other side and at half the step, near a
+  /// jump down to an eighth; a cut with a slope still missing is left out of the model. Throws BudgetSpent.
   static LocalModel by_differences(Objective& objective, const Evaluation& base);
 
   const Evaluation& base() const { return base_; }
@@ -24,6 +24,9 @@ class LocalModel {
   bool is_fresh() const { return fresh_; }
   /// Cuts that the model predicts.
   CutMask known() const { return both(has_slopes_, base_.usable); }
+
+  /// Cuts of which a difference landed on another branch: the point lies within a step of a jump.
+  const CutMask& at_jump() const { return at_jump_; }
 
   Observations predict(const Eigen::VectorXd& point) const;
 
@@ -64,7 +67,7 @@ class LocalModel {
 
   Evaluation base_;
   std::array<Eigen::MatrixXd, observable_count> slopes_;  ///< cuts x parameters
-  CutMask has_slopes_;
+  CutMask has_slopes_, at_jump_;
   bool fresh_ = true;
 };
 

@@ -96,6 +96,19 @@ std::string about_the_edge(const Calibration& calibration) {
   return text;
 }
 
+/// Cuts that a small change of a parameter moves to the other branch.
+std::string about_the_branches(const Job& job, const Fit& fit) {
+  std::string cuts;
+  for (std::size_t cut = 0; cut < fit.at_jump.size(); ++cut)
+    if (fit.at_jump[cut])
+      cuts += fmt::format("{}{} at {} ({})", cuts.empty() ? "" : ", ", show(job.cuts[cut].depth, "mm"),
+                          show(job.cuts[cut].rake, "deg"), forward::name(fit.at.runs[cut].branch));
+  if (cuts.empty()) return "";
+  return " These data sit at the jump between a touching and a bending chip, where a step of a parameter changes the "
+         "branch: " +
+         cuts + ". Slopes are those of the branch named; across the jump the intervals promise nothing.";
+}
+
 }  // namespace
 
 std::string show(double value, const std::string& unit) {
@@ -128,6 +141,7 @@ std::string state(const Job& job, const Calibration& calibration) {
     text += sentence + " ";
   }
   text += about_the_fit(fit.identifiability);
+  text += about_the_branches(job, fit);
   text += about_the_edge(calibration);
   if (!job.ties.empty()) {
     text += " All of this holds for the ties of the job:";

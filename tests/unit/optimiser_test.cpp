@@ -261,12 +261,68 @@ TEST(LocalModel, NeverDifferencesAcrossABranch) {
   point << space.coordinate(0, 60), space.coordinate(1, 2), space.coordinate(2, 0.3);
   const auto model = inverse::LocalModel::by_differences(objective, objective.evaluate(point));
   EXPECT_EQ(inverse::count(model.known()), 4u);
+  EXPECT_EQ(inverse::count(model.at_jump()), 4u) << "every cut jumps at 61 MPa";
   // The step of 4 % upwards crosses to the other branch; the slope must be that of this side, d ln F_c < d ln sigma_y.
   Eigen::VectorXd moved = point;
   moved[0] -= 0.02;
   const double change = std::log(model.predict(moved)(3, 0) / model.base().simulated(3, 0));
   EXPECT_LT(change, 0);
   EXPECT_GT(change, -0.02);
+}
+
+TEST(LocalModel, ShrinksTheStepUntilTheBranchStays) {
+  const TemporaryFolder folder;
+  // Bending on both sides: only steps below 1.6 % of the flow stress stay.
+  const auto island = [](const forward::Scene& scene) {
+    forward::CutResult result = synthetic_cut(scene);
+    if (std::abs(std::log(std::sqrt(3.0) * laws::shear_yield(scene.material) / 60)) > 0.016) {
+      result.branch = forward::Branch::bending;
+      result.F_c.value *= 0.5;
+    }
+    return result;
+  };
+  const inverse::Job job = write_job(folder);
+  const inverse::ParameterSpace space(job);
+  inverse::Misfit misfit(job, space);
+  inverse::Journal journal(folder / "journal.jsonl");
+  inverse::RunDatabase database(journal, "test", island, 2);
+  inverse::Objective objective(job, space, misfit, database, 1000);
+  Eigen::VectorXd point(3);
+  point << space.coordinate(0, 60), space.coordinate(1, 2), space.coordinate(2, 0.3);
+  const auto model = inverse::LocalModel::by_differences(objective, objective.evaluate(point));
+  EXPECT_EQ(inverse::count(model.known()), 4u);
+  EXPECT_GT(model.slopes(0)(3, 0), 0.5);
+  EXPECT_LT(model.slopes(0)(3, 0), 1);
+}
+
+TEST(LocalModel, CentralDifferencesHaveNoErrorOfFirstOrder) {
+  const TemporaryFolder folder;
+  const auto slope = [&](bool central, double step) {
+    const std::string text =
+        std::string(job_text) + fmt::format("[optimiser]\nstep = {}\ncentral = {}\n", step, central);
+    const inverse::Job job = write_job(folder, text);
+    const inverse::ParameterSpace space(job);
+    inverse::Misfit misfit(job, space);
+    inverse::Journal journal(folder / fmt::format("{}{}.jsonl", central, step));
+    inverse::RunDatabase database(journal, "test", synthetic_cut, 2);
+    inverse::Objective objective(job, space, misfit, database, 1000);
+    Eigen::VectorXd point(3);
+    point << space.coordinate(0, 60), space.coordinate(1, 2), space.coordinate(2, 0.3);
+    const auto model = inverse::LocalModel::by_differences(objective, objective.evaluate(point));
+    EXPECT_EQ(database.runs(), central ? 4u + 24u : 4u + 12u);
+    return model.slopes(0)(3, 0);
+  };
+  const double exact = slope(true, 1e-4);
+  EXPECT_LT(std::abs(slope(true, 0.2) - exact), 0.2 * std::abs(slope(false, 0.2) - exact));
+}
+
+TEST(Calibration, SaysThatTheDataSitAtAJump) {
+  const TemporaryFolder folder;
+  const auto outcome = calibrate(write_job(folder), folder / "journal.jsonl", two_branches);
+  EXPECT_THAT(outcome.calibration.statement, ::testing::HasSubstr("sit at the jump"));
+  EXPECT_THAT(outcome.calibration.statement, ::testing::HasSubstr("0.800 mm at 30.0 deg (touching)"));
+  const auto plain = calibrate(write_job(folder), folder / "plain.jsonl");
+  EXPECT_THAT(plain.calibration.statement, ::testing::Not(::testing::HasSubstr("jump")));
 }
 
 }  // namespace
