@@ -101,7 +101,10 @@ class Calibrator {
       result_.audit = audit_noise(objective_, first);
       OptimiserChoice choice = job_.optimiser;
       if (!choice.step_given) choice.step = result_.audit->step;
-      if (!choice.noise_given) choice.noise = result_.audit->noise;
+      if (!choice.noise_given) {
+        choice.noise = result_.audit->noise;
+        choice.noise_measured = result_.audit->measured;
+      }
       objective_.choose(choice);
       objective_.trace("noise audit", first);
     } catch (const BudgetSpent&) {

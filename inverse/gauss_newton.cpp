@@ -50,10 +50,7 @@ class GaussNewton {
     reason_ = reason;
   }
 
-  /// A decrease of chi^2 below this cannot be told from nothing.
-  double worthwhile() const {
-    return std::max(objective_.budget().tolerance, objective_.misfit().chi2_noise(here(), objective_.choice().noise));
-  }
+  double worthwhile() const { return objective_.worthwhile(here()); }
 
   void difference() {
     model_ = LocalModel::by_differences(objective_, here());
@@ -65,7 +62,8 @@ class GaussNewton {
     const ModelMinimum bold = propose(objective_, model_, radius_);
     const double promise = known_chi2 - bold.chi2;
     if (promise <= worthwhile()) {
-      if (model_.is_fresh()) return stop(true, "no step promises a decrease that could be told from noise");
+      if (model_.is_fresh() || !objective_.choice().confirm)
+        return stop(true, "no step promises a decrease that could be told from noise");
       return difference();
     }
     std::vector<Eigen::VectorXd> points{bold.point};

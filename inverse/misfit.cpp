@@ -129,14 +129,14 @@ double Misfit::chi2(const Evaluation& evaluation, const CutMask& mask) const {
   return residuals(evaluation.simulated, evaluation.point, mask).chi2;
 }
 
-double Misfit::chi2_noise(const Evaluation& evaluation, double noise) const {
+double Misfit::chi2_noise(const Evaluation& evaluation, double noise, bool measured) const {
   const Residuals here = residuals(evaluation);
   double variance = 0;
   for (Eigen::Index i = 0; i < weights_.rows(); ++i)
     for (Eigen::Index k = 0; k < weights_.cols(); ++k) {
       if (!evaluation.usable[static_cast<std::size_t>(i)]) continue;
       const double own = simulation_errors(evaluation.runs[static_cast<std::size_t>(i)])[static_cast<std::size_t>(k)];
-      const double rough = std::hypot(noise * evaluation.simulated(i, k), std::isfinite(own) ? own : 0);
+      const double rough = std::hypot(noise * evaluation.simulated(i, k), !measured && std::isfinite(own) ? own : 0);
       const double error = rough * weights_(i, k);
       const double r = here.weighted[i * weights_.cols() + k];
       variance += 2 * (4 * r * r * error * error + 2 * error * error * error * error);

@@ -58,9 +58,9 @@ class Misfit {
   Residuals residuals(const Observations& simulated, const Eigen::VectorXd& point, const CutMask& mask) const;
   Residuals residuals(const Evaluation& evaluation) const;
   double chi2(const Evaluation& evaluation, const CutMask& mask) const;
-  /// Standard deviation of a difference of two chi^2 when every simulated number is rough by the share `noise`
-  /// and by its own standard error.
-  double chi2_noise(const Evaluation& evaluation, double noise) const;
+  /// Standard deviation of a difference of two chi^2 when every simulated number is rough by the share `noise`, and
+  /// unless that was `measured` by its own standard error: a scatter within a window that two runs may well share.
+  double chi2_noise(const Evaluation& evaluation, double noise, bool measured) const;
 
   /// 1/s, and 0 where nothing was measured.
   const Observations& weights() const { return weights_; }

@@ -1,5 +1,6 @@
+#include <algorithm>
 #include <cmath>
-#include <memory>
+#include <utility>
 
 #include "forward/scene/scene.hpp"
 #include "inverse/fidelity_correction.hpp"
@@ -10,6 +11,8 @@ namespace kerf::inverse {
 namespace {
 
 constexpr int most_corrections = 8;
+// A coarse step that gains less than half a standard error is left to the next correction.
+constexpr double coarse_tolerance = 0.25;
 
 /// Williams' minimised shear plane in the place of a simulation; refused where it has no solution or no such material.
 RunRecord shear_plane(const Document& document) {
@@ -35,7 +38,9 @@ class CoarseModel {
  public:
   CoarseModel(Objective& fine, Misfit& misfit)
       : job_(coarse(fine.job())), space_(job_), objective_(job_, space_, misfit, fine.database(), fine.limit()) {
-    objective_.choose(fine.choice());
+    OptimiserChoice choice = fine.choice();
+    choice.confirm = false;
+    objective_.choose(choice);
     objective_.fidelity = "coarse, ";
     if (job_.coarse.closed_form) objective_.closed_form = shear_plane;
     objective_.on_trace = [&fine](const TraceEntry& entry) { fine.pass_on("coarse: ", entry); };
@@ -71,8 +76,7 @@ class CoarseModel {
  private:
   static Job coarse(Job job) {
     job.scene = job.coarse.scene;
-    // The fine runs decide what is left: a coarse step that gains less than they would is not worth its runs.
-    job.budget.tolerance *= 5;
+    job.budget.tolerance = std::max(job.budget.tolerance, coarse_tolerance);
     return job;
   }
 
@@ -101,8 +105,7 @@ SearchResult multi_fidelity(Objective& objective, const Evaluation& start) {
       if (found.model) slopes = found.model;
       const double promise = misfit.chi2(from, both(from.usable, found.best.usable)) -
                              misfit.chi2(found.best, both(from.usable, found.best.usable));
-      const double worthwhile =
-          std::max(objective.budget().tolerance, misfit.chi2_noise(best, objective.choice().noise));
+      const double worthwhile = objective.worthwhile(best);
       if (promise <= worthwhile) break;
       const Evaluation trial = objective.evaluate(found.best.point);
       const CutMask common = both(best.usable, trial.usable);

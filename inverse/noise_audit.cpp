@@ -118,18 +118,18 @@ class Auditor {
   }
 
   void conclude() {
-    bool any_force = false;
     std::optional<double> step;
     for (const ObservableNoise& entry : result_.observables) {
       if (entry.step) step = std::max(step.value_or(0), *entry.step);
       if (entry.observable == Observable::chip_ratio || (!entry.table && !entry.jitter)) continue;
-      any_force = true;
+      result_.measured = true;
       result_.noise = std::max(result_.noise, entry.noise);
     }
-    result_.noise = any_force ? std::clamp(result_.noise, least_noise, largest_noise) : objective_.choice().noise;
+    result_.noise =
+        result_.measured ? std::clamp(result_.noise, least_noise, largest_noise) : objective_.choice().noise;
     result_.step = step ? std::clamp(*step, least_step, largest_step) : objective_.choice().step;
     result_.note =
-        any_force
+        result_.measured
             ? fmt::format("a simulated force is rough by {:.2g} of its value, a difference takes a step of {:.2g}",
                           result_.noise, result_.step)
             : "no replicate could be compared; step and noise stay as assumed";

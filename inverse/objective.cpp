@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "forward/scene/scene.hpp"
 #include "models/base/units.hpp"
 
@@ -63,6 +65,10 @@ std::vector<Evaluation> Objective::evaluate(const std::vector<Eigen::VectorXd>& 
     evaluations.push_back(std::move(evaluation));
   }
   return evaluations;
+}
+
+double Objective::worthwhile(const Evaluation& evaluation) const {
+  return std::max(job_.budget.tolerance, misfit_.chi2_noise(evaluation, choice_.noise, choice_.noise_measured));
 }
 
 void Objective::trace(std::string what, const Evaluation& at) {

@@ -60,6 +60,9 @@ class Objective {
   std::function<void(const Probe&, RunRecord&)> correct;
   std::string fidelity;  ///< begins the label of every run
 
+  /// A decrease of chi^2 from `evaluation` below this cannot be told from nothing.
+  double worthwhile(const Evaluation& evaluation) const;
+
   /// Remembers a step of the search and reports it as progress.
   void trace(std::string what, const Evaluation& at);
   /// Remembers a step that another objective on the same database took.
