@@ -58,7 +58,14 @@ class ScalarMisfit {
   std::exception_ptr failure_;
 };
 
-SearchResult search_with(nlopt::algorithm algorithm, Objective& objective, const Evaluation& start) {
+/// A global search that never ends by itself: it is given so many evaluations per parameter and one.
+struct Inner {
+  nlopt::algorithm local;
+  int evaluations_each;
+};
+
+SearchResult search_with(nlopt::algorithm algorithm, Objective& objective, const Evaluation& start,
+                         std::optional<Inner> inner = {}) {
   const ParameterSpace& space = objective.space();
   const auto vector = [](const Eigen::VectorXd& x) { return std::vector<double>(x.data(), x.data() + x.size()); };
   nlopt::srand(1);  // the random searches repeat themselves exactly, which is what makes replay possible
@@ -80,6 +87,15 @@ SearchResult search_with(nlopt::algorithm algorithm, Objective& objective, const
   // Without slopes, one small step says little about what is left: these tolerances are far below the answer's error.
   search.set_ftol_abs(objective.budget().tolerance / 100);
   search.set_xtol_abs(objective.choice().step / 100);
+  if (inner) {
+    nlopt::opt local(inner->local, static_cast<unsigned>(space.dimension()));
+    local.set_ftol_abs(objective.budget().tolerance);
+    local.set_xtol_abs(objective.choice().step / 10);
+    local.set_initial_step(5 * objective.choice().step);
+    search.set_local_optimizer(local);
+    search.set_population(4);
+    search.set_maxeval(inner->evaluations_each * static_cast<int>(space.dimension() + 1));
+  }
   std::vector<double> point = vector(start.point);
   double chi2 = 0;
   nlopt::result outcome = nlopt::FAILURE;
@@ -93,12 +109,13 @@ SearchResult search_with(nlopt::algorithm algorithm, Objective& objective, const
     outcome = nlopt::FAILURE;
   }
   misfit.rethrow();
-  const bool converged = !misfit.spent() && outcome > 0 && outcome != nlopt::MAXEVAL_REACHED;
+  const bool converged = !misfit.spent() && outcome > 0 && (inner || outcome != nlopt::MAXEVAL_REACHED);
   return {.best = misfit.best(),
           .converged = converged,
-          .reason = misfit.spent() ? "the budget of runs is spent"
-                    : converged    ? "the search's steps no longer change the misfit"
-                                   : "the search failed",
+          .reason = misfit.spent()       ? "the budget of runs is spent"
+                    : inner && converged ? "the evaluations that a search of all basins is given are used up"
+                    : converged          ? "the search's steps no longer change the misfit"
+                                         : "the search failed",
           .model = {}};
 }
 
@@ -114,6 +131,10 @@ SearchResult sbplx(Objective& objective, const Evaluation& start) {
 
 SearchResult crs2(Objective& objective, const Evaluation& start) {
   return search_with(nlopt::GN_CRS2_LM, objective, start);
+}
+
+SearchResult mlsl(Objective& objective, const Evaluation& start) {
+  return search_with(nlopt::G_MLSL_LDS, objective, start, Inner{.local = nlopt::LN_BOBYQA, .evaluations_each = 100});
 }
 
 }  // namespace kerf::inverse

@@ -11,11 +11,14 @@ const std::vector<Optimiser>& optimisers() {
        gauss_newton},
       {"multi_fidelity", "Gauss-Newton on coarse runs ([coarse]) corrected to fine ones; last steps on fine runs only",
        multi_fidelity},
+      {"surrogate", "multistart on quadratics fitted over the whole box; its best minima simulated, then gauss_newton",
+       surrogate},
       {"levenberg_marquardt", "Ceres' bounded Levenberg-Marquardt with parallel differences at every step",
        levenberg_marquardt},
       {"bobyqa", "NLopt's BOBYQA: quadratic models of chi^2, no differences", bobyqa},
       {"sbplx", "NLopt's Subplex: simplex search on subspaces, patient with noise", sbplx},
       {"crs2", "NLopt's controlled random search: global, and dear", crs2},
+      {"mlsl", "NLopt's multi-level single linkage with BOBYQA: every basin once; global, and dear", mlsl},
   };
   return all;
 }

@@ -30,10 +30,13 @@ SearchResult gauss_newton(Objective& objective, const Evaluation& start);
 SearchResult gauss_newton(Objective& objective, const LocalModel& model);
 /// Coarse runs corrected to the fine ones do the search; fine runs check it, take the last steps and give the slopes.
 SearchResult multi_fidelity(Objective& objective, const Evaluation& start);
+/// Quadratics over the whole box, many starts on them, the best minima simulated, then gauss_newton.
+SearchResult surrogate(Objective& objective, const Evaluation& start);
 SearchResult levenberg_marquardt(Objective& objective, const Evaluation& start);
 SearchResult bobyqa(Objective& objective, const Evaluation& start);
 SearchResult sbplx(Objective& objective, const Evaluation& start);
 SearchResult crs2(Objective& objective, const Evaluation& start);
+SearchResult mlsl(Objective& objective, const Evaluation& start);
 
 /// All of them; adding one is adding a file and a line.
 const std::vector<Optimiser>& optimisers();

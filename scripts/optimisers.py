@@ -90,8 +90,7 @@ METHODS = {
                        'changes = ["resolution.cells_through_chip={coarse}"]\n', "coarse runs, noise audit"),
     "closed_form": ('[optimiser]\nmethod = "multi_fidelity"\n[coarse]\nmodel = "closed_form"\n',
                     "multi_fidelity on Williams' form, audit"),
-    "surrogate": ('[optimiser]\nmethod = "surrogate"\n[coarse]\n'
-                  'changes = ["resolution.cells_through_chip={coarse}"]\n', "multistart on a quadratic, audit"),
+    "surrogate": ('[optimiser]\nmethod = "surrogate"\n', "multistart on a quadratic, noise audit"),
     "gauss_newton": ('[optimiser]\nmethod = "gauss_newton"\n', "noise audit"),
     "gauss_newton_fixed": ('[optimiser]\nmethod = "gauss_newton"\nstep = 0.04\nnoise = 0.001\n', "no audit"),
     "ceres_central": ('[optimiser]\nmethod = "levenberg_marquardt"\nstep = 0.1\nnoise = 0.001\ncentral = true\n',

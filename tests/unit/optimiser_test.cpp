@@ -52,7 +52,8 @@ TEST_P(EveryOptimiser, RecoversATwin) {
 INSTANTIATE_TEST_SUITE_P(Methods, EveryOptimiser,
                          ::testing::Values(Method{"gauss_newton", 100, 0.01}, Method{"multi_fidelity", 200, 0.01},
                                            Method{"levenberg_marquardt", 400, 0.01}, Method{"bobyqa", 2000, 0.05},
-                                           Method{"sbplx", 6000, 0.05}, Method{"crs2", 12000, 0.1}));
+                                           Method{"sbplx", 6000, 0.05}, Method{"crs2", 12000, 0.1},
+                                           Method{"mlsl", 4000, 0.05}, Method{"surrogate", 400, 0.01}));
 
 /// Counts runs by fidelity; coarse ones (three cells) are off by a tenth, more at high flow stress.
 struct TwoFidelities {
@@ -133,8 +134,29 @@ TEST(MultiFidelity, RefusesAChangeThatIsNone) {
   };
   EXPECT_THAT(message("resolution.cells_through_ship=3"), ::testing::HasSubstr("cells_through_chip"));
   EXPECT_THAT(message("resolution.cells_through_chip"), ::testing::HasSubstr("PATH=VALUE"));
+  EXPECT_THAT(message("cohesive.mode_I.law=cubik"), ::testing::HasSubstr("cubic"));
   EXPECT_THAT(message("resolution.cells_through_chip=1"), ::testing::HasSubstr("cells_through_chip"));
   EXPECT_EQ(message("resolution.cells_through_chip=3"), "");
+}
+
+TEST(Surrogate, LeavesAWrongBasin) {
+  const TemporaryFolder folder;
+  // A ripple of 30 % over the flow stress: the search that begins beside a dip stays in it.
+  const auto rippled = [](const forward::Scene& scene) {
+    forward::CutResult result = synthetic_cut(scene);
+    const double x = std::log(std::sqrt(3.0) * laws::shear_yield(scene.material) / 60);
+    const double ripple = std::exp(0.9 * std::pow(std::sin(2.2 * x), 2));
+    result.F_c.value *= ripple;
+    result.F_t.value *= ripple;
+    return result;
+  };
+  const std::string far = replaced(with_starts(job_text), "start = \"120 MPa\"", "start = \"20 MPa\"");
+  const auto chi2 = [&](const char* method) {
+    const inverse::Job job =
+        write_job(folder, far + fmt::format("[budget]\nmax_runs = 600\n[optimiser]\nmethod = \"{}\"\n", method));
+    return calibrate(job, folder / fmt::format("{}.jsonl", method), rippled).calibration.fit.residuals.chi2;
+  };
+  EXPECT_LT(chi2("surrogate"), 0.1);
 }
 
 TEST(Optimiser, NamesAreUnique) {
