@@ -11,6 +11,7 @@
 #include "forward/scene/preset.hpp"
 #include "forward/scene/scene.hpp"
 #include "inverse/parameter_space.hpp"
+#include "inverse/sweep_axis.hpp"
 #include "models/base/atomic_file.hpp"
 #include "models/base/error.hpp"
 #include "models/base/quantity.hpp"
@@ -190,19 +191,7 @@ Coarse read_coarse(const Contents& contents, const Document& scene) {
     return coarse;
   }
   const Values& values = contents.at("coarse");
-  for (const std::string& change : values.list("changes")) {
-    const std::size_t sign = std::min(change.find('='), change.size());
-    const std::string path = change.substr(0, sign);
-    const Parameter& parameter = Document::find_number(path, blocks, values.where("changes"));
-    try {
-      const Quantity quantity = split_quantity(sign < change.size() ? change.substr(sign + 1) : "");
-      coarse.scene.set_number(path, in_range(quantity.number, quantity.unit.empty() ? "1" : quantity.unit, parameter),
-                              blocks);
-    } catch (const std::invalid_argument& error) {
-      throw InputError(fmt::format("{}: [coarse] changes: \"{}\" {}; write PATH=VALUE", values.where("changes"), change,
-                                   error.what()));
-    }
-  }
+  apply_settings(values.list("changes"), coarse.scene, blocks, values.where("changes"));
   forward::read_scene(coarse.scene);
   return coarse;
 }
@@ -251,6 +240,7 @@ Job read_job(const fs::path& file, const std::string& name, const Locate& locate
           .source = std::move(source),
           .scene_file = std::move(scene),
           .curves = {},
+          .curve_changes = {},
           .cuts = {},
           .scene = base,
           .free = read_free_parameters(contents, base),
@@ -268,6 +258,7 @@ Job read_job(const fs::path& file, const std::string& name, const Locate& locate
   }
   for (const Values& values : contents.all("curve")) {
     job.curves.push_back(load(values.text("file"), locate));
+    job.curve_changes.push_back(values.has("changes") ? values.list("changes") : std::vector<std::string>());
     add_cuts(job, values, data::parse_curve(job.curves.back().content, locate(job.curves.back().name).string()));
   }
   require_observables(job, contents);

@@ -97,7 +97,8 @@ struct InputFile {
 struct Job {
   std::string title;
   InputFile source, scene_file;
-  std::vector<InputFile> curves;  ///< one per [[curve]]
+  std::vector<InputFile> curves;                        ///< one per [[curve]]
+  std::vector<std::vector<std::string>> curve_changes;  ///< of the scene for its cuts, PATH=VALUE; one per [[curve]]
   std::vector<MeasuredCut> cuts;
   Document scene;  ///< the base scene
   std::vector<FreeParameter> free;

@@ -28,6 +28,10 @@ std::vector<Block> declare() {
        .parameters = {text("file", "CSV file with a unit in every column's header, a path relative to this file"),
                       number("shallowest", "mm", 0, 1e3, "points at smaller depths are left out").if_given(),
                       number("deepest", "mm", 0, 1e3, "points at greater depths are left out").if_given(),
+                      list("changes",
+                           "what differs from the scene in this curve's cuts, written PATH=VALUE, such as "
+                           "\"bridging.tool=ignores\"")
+                          .if_given(),
                       text("specimen", "only the points of this specimen").if_given()},
        .required = true,
        .repeated = true},
@@ -102,7 +106,7 @@ std::vector<Block> declare() {
                            {"simulation", "closed_form"})
                           .or_else("simulation"),
                       list("changes",
-                           "numbers of the scene in a coarse run, written PATH=VALUE, such as "
+                           "what differs from the scene in a coarse run, written PATH=VALUE, such as "
                            "\"resolution.cells_through_chip=3\"; without any half the cells")
                           .if_given()}},
       {.path = "discrepancy",

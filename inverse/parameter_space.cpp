@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "forward/scene/scene.hpp"
+#include "inverse/sweep_axis.hpp"
 
 namespace kerf::inverse {
 namespace {
@@ -18,7 +19,12 @@ double read_number(const Contents& contents, const std::string& path) {
 }  // namespace
 
 ParameterSpace::ParameterSpace(const Job& job)
-    : base_(job.scene), free_(job.free), ties_(job.ties), lower_(dimension()), upper_(dimension()) {
+    : base_(job.scene),
+      curve_changes_(job.curve_changes),
+      free_(job.free),
+      ties_(job.ties),
+      lower_(dimension()),
+      upper_(dimension()) {
   for (Eigen::Index j = 0; j < dimension(); ++j) {
     const FreeParameter& parameter = free_[static_cast<std::size_t>(j)];
     lower_[j] = coordinate(j, parameter.lower);
@@ -57,6 +63,8 @@ Eigen::VectorXd ParameterSpace::clamp(const Eigen::VectorXd& point) const {
 Document ParameterSpace::scene(const Eigen::VectorXd& point, const MeasuredCut& cut) const {
   const std::vector<Block>& blocks = forward::scene_blocks();
   Document patched = base_;
+  if (cut.curve < curve_changes_.size())
+    apply_settings(curve_changes_[cut.curve], patched, blocks, "[[curve]] changes");
   patched.set_number("cut.depth", cut.depth, blocks);
   patched.set_number("tool.rake", cut.rake, blocks);
   for (Eigen::Index j = 0; j < dimension(); ++j) {

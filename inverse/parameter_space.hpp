@@ -28,7 +28,8 @@ class ParameterSpace {
   /// `point` moved into the bounds.
   Eigen::VectorXd clamp(const Eigen::VectorXd& point) const;
 
-  /// The base scene with the depth and rake of `cut`, the parameters at `point` and the ties, in this order.
+  /// The base scene with the changes of its curve, the depth and rake of `cut`, the parameters at `point` and the ties,
+  /// in this order.
   Document scene(const Eigen::VectorXd& point, const MeasuredCut& cut) const;
 
   /// The coefficient of friction at `point`, and the free parameter that it is (-1: fixed by the scene).
@@ -37,6 +38,7 @@ class ParameterSpace {
 
  private:
   Document base_;
+  std::vector<std::vector<std::string>> curve_changes_;
   std::vector<FreeParameter> free_;
   std::vector<Tie> ties_;
   Eigen::VectorXd lower_, upper_;

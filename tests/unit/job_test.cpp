@@ -31,6 +31,24 @@ TEST(Job, IsReadWithItsSceneAndCurve) {
   EXPECT_FALSE(job.edge_force.has_value());
 }
 
+TEST(Job, ACurveMayDifferFromTheScene) {
+  const TemporaryFolder folder;
+  const std::string second = "[[curve]]\nfile = \"curve.csv\"\nchanges = [\"material.elastic_modulus=2000MPa\"]\n";
+  const inverse::Job job = write_job(folder, replaced(job_text, "[[free]]", second + "[[free]]"));
+  ASSERT_EQ(job.cuts.size(), 8u);
+  const inverse::ParameterSpace space(job);
+  const auto modulus = [&](std::size_t cut) {
+    return space.scene(space.lower(), job.cuts[cut])
+        .read(forward::scene_blocks())
+        .at("material")
+        .number("elastic_modulus");
+  };
+  EXPECT_EQ(modulus(3), 1000);
+  EXPECT_EQ(modulus(4), 2000);
+  const std::string wrong = replaced(second, "elastic_modulus", "elastic_modulos");
+  EXPECT_THROW(write_job(folder, replaced(job_text, "[[free]]", wrong + "[[free]]")), InputError);
+}
+
 TEST(Job, PatchesTheSceneThroughItsOrdinaryReader) {
   const TemporaryFolder folder;
   const inverse::Job job = write_job(folder);
