@@ -9,6 +9,7 @@ namespace kerf::commands {
 /// models/base/error.hpp).
 void add_predict(CLI::App& app, int& exit_code);
 void add_reduce(CLI::App& app, int& exit_code);
+void add_r_curve(CLI::App& app, int& exit_code);
 void add_simulate(CLI::App& app, int& exit_code);
 void add_explain(CLI::App& app, int& exit_code);
 void add_check(CLI::App& app, int& exit_code);

@@ -41,6 +41,7 @@ int run(int argc, char** argv) {
   kerf::commands::add_simulate(app, exit_code);
   kerf::commands::add_predict(app, exit_code);
   kerf::commands::add_reduce(app, exit_code);
+  kerf::commands::add_r_curve(app, exit_code);
   kerf::commands::add_sweep(app, exit_code);
   kerf::commands::add_study(app, exit_code);
   kerf::commands::add_calibrate(app, exit_code);

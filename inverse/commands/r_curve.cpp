@@ -1,0 +1,100 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "data/r_curve.hpp"
+#include "forward/scene/scene.hpp"
+#include "inverse/commands/commands.hpp"
+#include "models/base/atomic_file.hpp"
+#include "models/base/error.hpp"
+#include "models/base/units.hpp"
+#include "models/chip/bridged_arms.hpp"
+#include "models/chip/root_rotation.hpp"
+
+namespace kerf::commands {
+namespace {
+
+/// The specimen of a scene with grips: its arms are as high as its depth of cut.
+chip::Arms arms_of(const forward::Scene& scene, const std::string& file) {
+  if (!scene.grips) throw InputError(file + ": a specimen has a [grips] block; see data/scenes/dcb_rcurve.toml");
+  chip::Arms arms{
+      .modulus = 0, .height = scene.cut.depth, .notch = scene.cut.notch * scene.cut.depth, .root_rotation = 0};
+  std::visit(
+      [&](const auto& law) {
+        if constexpr (requires { law.elastic_modulus; }) {
+          arms.modulus = law.elastic_modulus / (1 - law.poisson_ratio * law.poisson_ratio);
+          arms.root_rotation = chip::isotropic_root_rotation;
+        } else {
+          arms.modulus = law.plane_strain_modulus();
+          arms.root_rotation = chip::orthotropic_root_rotation(law.constants().modulus_x, law.constants().modulus_y,
+                                                               law.constants().shear_modulus_xy);
+        }
+      },
+      scene.material);
+  return arms;
+}
+
+nlohmann::ordered_json number(double value) {
+  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+}
+
+nlohmann::ordered_json to_json(const chip::Fit& fit) {
+  nlohmann::ordered_json json{{"chi2", number(fit.chi2)}, {"degrees_of_freedom", fit.freedom}, {"parameters", {}}};
+  for (const chip::FittedParameter& p : fit.parameters) {
+    const double one = consistent_units_in(p.unit);
+    json["parameters"][p.name] = {{"value", number(p.value / one)},
+                                  {"se", number(p.standard_error / one)},
+                                  {"interval", {number(p.lower / one), number(p.upper / one)}},
+                                  {"unit", p.unit},
+                                  {"verdict", chip::in_words(p.verdict)}};
+  }
+  return json;
+}
+
+void print(const chip::Fit& fit) {
+  for (const chip::FittedParameter& p : fit.parameters) {
+    const double one = consistent_units_in(p.unit);
+    fmt::print("{:<21}{:>9.4g} +- {:<8.3g}{:>9.4g} ... {:<9.4g}{:<7} {}\n", p.name, p.value / one,
+               p.standard_error / one, p.lower / one, p.upper / one, p.unit, chip::in_words(p.verdict));
+  }
+  fmt::print("chi2 = {:.3g} with {} degrees of freedom\n", fit.chi2, fit.freedom);
+}
+
+}  // namespace
+
+void add_r_curve(CLI::App& app, int& exit_code) {
+  struct Options {
+    std::string curve, scene;
+    bool json = false;
+  };
+  const auto options = std::make_shared<Options>();
+  auto* command = app.add_subcommand("r-curve", "Initiation and bridging toughness from a measured R-curve");
+  command->add_option("CURVE", options->curve, "CSV file with crack_extension[mm], G[J/m^2], G_sd[J/m^2]")->required();
+  command->add_option("--specimen", options->scene, "scene of the specimen (TOML with [grips])")->required();
+  command->add_flag("--json", options->json, "machine-readable result");
+  command->footer(
+      "Two bridged arms by beam theory: the trilinear law's G_init, G_b and bridging stress. Exit code 6: "
+      "one of the toughnesses is not measured by this curve.");
+  command->callback([options, &exit_code] {
+    std::vector<chip::ResistancePoint> points;
+    for (const data::ResistanceRow& row : data::read_r_curve(options->curve))
+      points.push_back({.extension = row.extension, .G_R = row.G, .standard_error = row.sd.value_or(0)});
+    const forward::Scene scene = forward::read_scene(Document::parse(read_file(options->scene), options->scene));
+    const chip::Fit fit = chip::fit_r_curve(arms_of(scene, options->scene), points);
+    if (options->json)
+      fmt::print("{}\n", to_json(fit).dump(2));
+    else
+      print(fit);
+    exit_code = static_cast<int>(!fit.converged ? ExitCode::not_converged
+                                 : fit.parameters[0].verdict == chip::Verdict::measured &&
+                                         fit.parameters[1].verdict == chip::Verdict::measured
+                                     ? ExitCode::success
+                                     : ExitCode::not_identifiable);
+  });
+}
+
+}  // namespace kerf::commands
