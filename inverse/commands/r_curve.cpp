@@ -14,6 +14,7 @@
 #include "models/base/units.hpp"
 #include "models/chip/bridged_arms.hpp"
 #include "models/chip/root_rotation.hpp"
+#include "models/laws/trilinear.hpp"
 
 namespace kerf::commands {
 namespace {
@@ -43,7 +44,10 @@ nlohmann::ordered_json number(double value) {
 }
 
 nlohmann::ordered_json to_json(const chip::Fit& fit) {
-  nlohmann::ordered_json json{{"chi2", number(fit.chi2)}, {"degrees_of_freedom", fit.freedom}, {"parameters", {}}};
+  nlohmann::ordered_json json{{"chi2", number(fit.chi2)},
+                              {"degrees_of_freedom", fit.freedom},
+                              {"rejected", fit.rejected()},
+                              {"parameters", {}}};
   for (const chip::FittedParameter& p : fit.parameters) {
     const double one = consistent_units_in(p.unit);
     json["parameters"][p.name] = {{"value", number(p.value / one)},
@@ -61,7 +65,8 @@ void print(const chip::Fit& fit) {
     fmt::print("{:<21}{:>9.4g} +- {:<8.3g}{:>9.4g} ... {:<9.4g}{:<7} {}\n", p.name, p.value / one,
                p.standard_error / one, p.lower / one, p.upper / one, p.unit, chip::in_words(p.verdict));
   }
-  fmt::print("chi2 = {:.3g} with {} degrees of freedom\n", fit.chi2, fit.freedom);
+  fmt::print("chi2 = {:.3g} with {} degrees of freedom{}\n", fit.chi2, fit.freedom,
+             fit.rejected() ? ": the beams do not describe this curve, and none of the above is measured" : "");
 }
 
 }  // namespace
@@ -77,19 +82,26 @@ void add_r_curve(CLI::App& app, int& exit_code) {
   command->add_option("--specimen", options->scene, "scene of the specimen (TOML with [grips])")->required();
   command->add_flag("--json", options->json, "machine-readable result");
   command->footer(
-      "Two bridged arms by beam theory: the trilinear law's G_init, G_b and bridging stress. Exit code 6: "
-      "one of the toughnesses is not measured by this curve.");
+      "Two bridged arms by beam theory: the trilinear law's G_init, G_b and bridging stress; strength and peak are "
+      "the\n"
+      "scene's, and with another law the initiation happens in a point. Exit code 4: the beams do\n"
+      "not describe this curve. 6: it does not measure one of the toughnesses.");
   command->callback([options, &exit_code] {
     std::vector<chip::ResistancePoint> points;
     for (const data::ResistanceRow& row : data::read_r_curve(options->curve))
       points.push_back({.extension = row.extension, .G_R = row.G, .standard_error = row.sd.value_or(0)});
     const forward::Scene scene = forward::read_scene(Document::parse(read_file(options->scene), options->scene));
-    const chip::Fit fit = chip::fit_r_curve(arms_of(scene, options->scene), points);
+    chip::BridgedCrack known;
+    if (const auto* law = dynamic_cast<const laws::Trilinear*>(scene.cohesive.mode_I.get())) {
+      known.strength = law->shape().strength;
+      known.peak = law->shape().peak_opening / law->shape().knee_opening;
+    }
+    const chip::Fit fit = chip::fit_r_curve(arms_of(scene, options->scene), points, known);
     if (options->json)
       fmt::print("{}\n", to_json(fit).dump(2));
     else
       print(fit);
-    exit_code = static_cast<int>(!fit.converged ? ExitCode::not_converged
+    exit_code = static_cast<int>(!fit.converged || fit.rejected() ? ExitCode::not_converged
                                  : fit.parameters[0].verdict == chip::Verdict::measured &&
                                          fit.parameters[1].verdict == chip::Verdict::measured
                                      ? ExitCode::success

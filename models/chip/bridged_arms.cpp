@@ -22,14 +22,32 @@ class Zone {
       : arms_(arms),
         crack_(crack),
         stiffness_(arms.modulus * arms.height * arms.height * arms.height / 12),
-        critical_(2 * crack.bridging_toughness / crack.bridging_stress) {}
-
-  double traction(double opening) const {
-    return opening < critical_ ? crack_.bridging_stress * (1 - std::max(opening, 0.0) / critical_) : 0;
+        critical_(2 * crack.bridging_toughness / crack.bridging_stress) {
+    if (crack.strength > 0) {
+      knee_ = 2 * crack.initiation_toughness / (crack.strength - crack.peak * crack.bridging_stress);
+      front_ = crack.peak * knee_;
+    }
   }
+
+  /// From the front's opening on.
+  double traction(double opening) const {
+    if (opening >= critical_) return 0;
+    if (opening >= knee_ || knee_ <= front_)
+      return crack_.bridging_stress * (critical_ - std::max(opening, 0.0)) / (critical_ - knee_);
+    const double share = (std::max(opening, front_) - front_) / (knee_ - front_);
+    return crack_.strength + share * (crack_.bridging_stress - crack_.strength);
+  }
+  /// What the front takes.
+  double at_front() const { return crack_.strength > 0 ? 0.5 * crack_.strength * front_ : crack_.initiation_toughness; }
+  /// Area under T from the front's opening to this one: a trapezium down to the knee and one of the tail.
   double work(double opening) const {
-    const double reached = std::clamp(opening, 0.0, critical_);
-    return crack_.bridging_stress * reached * (1 - 0.5 * reached / critical_);
+    if (opening < knee_) {
+      const double reached = std::max(opening, front_);
+      return 0.5 * (crack_.strength + traction(reached)) * (reached - front_);
+    }
+    const double reached = std::clamp(opening, knee_, critical_);
+    return 0.5 * (crack_.strength + crack_.bridging_stress) * (knee_ - front_) +
+           0.5 * (crack_.bridging_stress + traction(reached)) * (reached - knee_);
   }
   double stiffness() const { return stiffness_; }
 
@@ -37,8 +55,8 @@ class Zone {
   State across(double tip_pull, double extension) const {
     const double lever = arms_.root_rotation * arms_.height;
     const double share = tip_pull * lever / stiffness_;
-    const double curvature = -share + std::sqrt(share * share + crack_.initiation_toughness / stiffness_);  // Eq. (2)
-    State y{0, lever * curvature, curvature, -tip_pull / stiffness_};
+    const double curvature = -share + std::sqrt(share * share + at_front() / stiffness_);  // Eq. (2)
+    State y{0.5 * front_, lever * curvature, curvature, -tip_pull / stiffness_};
     const double dx = extension / steps;
     const auto slope = [&](const State& s) { return State{s[1], s[2], s[3], -traction(2 * s[0]) / stiffness_}; };
     const auto moved = [](const State& s, const State& d, double by) {
@@ -62,18 +80,22 @@ class Zone {
   const Arms& arms_;
   const BridgedCrack& crack_;
   double stiffness_, critical_;
+  double knee_ = 0, front_ = 0;
 };
 
 struct Misfit {
   Arms arms;
   std::vector<ResistancePoint> points;
+  BridgedCrack known;
   bool weighted;
 
   bool operator()(double const* const* unknowns, double* residuals) const {
-    const BridgedCrack crack{.initiation_toughness = unknowns[0][0],
-                             .bridging_toughness = unknowns[0][1],
-                             .bridging_stress = unknowns[0][2]};
+    BridgedCrack crack = known;
+    crack.initiation_toughness = unknowns[0][0];
+    crack.bridging_toughness = unknowns[0][1];
+    crack.bridging_stress = unknowns[0][2];
     if (!(crack.initiation_toughness > 0 && crack.bridging_toughness > 0 && crack.bridging_stress > 0)) return false;
+    if (crack.strength > 0 && !(crack.bridging_stress < crack.strength)) return false;
     for (std::size_t i = 0; i < points.size(); ++i)
       residuals[i] = (resistance(arms, crack, points[i].extension).G_R - points[i].G_R) /
                      (weighted ? points[i].standard_error : 1.0);
@@ -98,15 +120,15 @@ Resistance resistance(const Arms& arms, const BridgedCrack& crack, double extens
   high = root.second;
   const State end = zone.across(0.5 * (low + high), extension);
   const double opening = 2 * end[0];
-  return {.G_R = crack.initiation_toughness + zone.work(opening),
+  return {.G_R = zone.at_front() + zone.work(opening),
           .opening = opening,
           .pull = -zone.stiffness() * end[3],
           .rotation = end[1] + end[2] * arms.notch + 0.5 * end[3] * arms.notch * arms.notch};
 }
 
-Fit fit_r_curve(const Arms& arms, const std::vector<ResistancePoint>& points) {
+Fit fit_r_curve(const Arms& arms, const std::vector<ResistancePoint>& points, const BridgedCrack& known) {
   const bool weighted = std::all_of(points.begin(), points.end(), [](const auto& p) { return p.standard_error > 0; });
-  auto* cost = new ceres::DynamicNumericDiffCostFunction<Misfit>(new Misfit{arms, points, weighted});
+  auto* cost = new ceres::DynamicNumericDiffCostFunction<Misfit>(new Misfit{arms, points, known, weighted});
   cost->AddParameterBlock(3);
   cost->SetNumResiduals(static_cast<int>(points.size()));
   const auto [least, largest] =

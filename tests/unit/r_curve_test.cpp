@@ -40,6 +40,17 @@ TEST(BridgedArms, TheIntegralAboutTheSpecimenIsTheResistance) {
   EXPECT_LT(resistance(arms, wood, 5).G_R, 0.5);
 }
 
+TEST(BridgedArms, TheTrilinearZoneBalancesToo) {
+  BridgedCrack whole = wood;
+  whole.strength = 4;
+  whole.peak = 0.1;
+  EXPECT_LT(resistance(arms, whole, 0).G_R, 0.03) << "the front alone takes the rise to the peak";
+  EXPECT_NEAR(resistance(arms, whole, 40).G_R, 0.62, 1e-12);
+  // The double cantilever beam of data/scenes/dcb_rcurve.toml, simulated: G_R at two extensions, N/mm.
+  EXPECT_NEAR(resistance(arms, whole, 5.31).G_R, 0.291, 0.03);
+  EXPECT_NEAR(resistance(arms, whole, 11.44).G_R, 0.4835, 0.05);
+}
+
 TEST(BridgedArms, HigherArmsNeedALongerZone) {
   Arms high = arms;
   high.height = 8;
