@@ -170,8 +170,9 @@ class CurveReader {
              fmt::format("the column \"{}\" is missing ({}){}", parameter.key, parameter.meaning,
                          constant ? fmt::format("; a line `#: {} = 15 deg` serves as well", parameter.key) : ""));
     }
-    if (columns_.contains("chip_ratio_sd") && !columns_.contains("chip_ratio"))
-      refuse(csv_.header[columns_.at("chip_ratio_sd").index], "there is a chip_ratio_sd but no chip_ratio");
+    for (const std::string shape : {"chip_ratio", "curl_radius"})
+      if (columns_.contains(shape + "_sd") && !columns_.contains(shape))
+        refuse(csv_.header[columns_.at(shape + "_sd").index], fmt::format("there is a {0}_sd but no {0}", shape));
     for (const char* force : {"Fc", "Ft", "Fc_sd", "Ft_sd"})
       if (const auto column = columns_.find(force);
           column != columns_.end() && !columns_.contains("width") && same_dimension(column->second.unit, force_unit))
@@ -241,6 +242,13 @@ class CurveReader {
     return given(row, key) ? std::optional(number(row, key)) : std::nullopt;
   }
 
+  std::optional<Measured> optional_measured(const std::vector<Cell>& row, const std::string& key, int repeats) {
+    if (given(row, key)) return Measured{number(row, key), optional_number(row, key + "_sd"), repeats};
+    if (given(row, key + "_sd"))
+      refuse(cell(row, key + "_sd"), fmt::format("there is a {0}_sd but no {0} in this row", key));
+    return std::nullopt;
+  }
+
   int whole_number(const std::vector<Cell>& row, const std::string& key, int otherwise) {
     if (!given(row, key)) return otherwise;
     const double value = number(row, key);
@@ -260,10 +268,11 @@ class CurveReader {
     point.tool_radius = optional_number(row, "tool_radius");
     point.F_c = {number(row, "Fc"), optional_number(row, "Fc_sd"), repeats};
     point.F_t = {number(row, "Ft"), optional_number(row, "Ft_sd"), repeats};
-    if (given(row, "chip_ratio"))
-      point.chip_ratio = Measured{number(row, "chip_ratio"), optional_number(row, "chip_ratio_sd"), repeats};
-    else if (given(row, "chip_ratio_sd"))
-      refuse(cell(row, "chip_ratio_sd"), "there is a chip_ratio_sd but no chip_ratio in this row");
+    point.chip_ratio = optional_measured(row, "chip_ratio", repeats);
+    point.curl_radius = optional_measured(row, "curl_radius", repeats);
+    if (point.curl_radius && point.curl_radius->value == 0)
+      refuse(cell(row, "curl_radius"),
+             "a chip of curl radius 0 does not exist; leave the cell of a straight chip empty");
     if (given(row, "specimen")) point.specimen = cell(row, "specimen").text;
     point.replicate = whole_number(row, "replicate", unnumbered);
     return point;
@@ -321,6 +330,11 @@ const Block& curve_columns() {
            kerf::number("Ft_sd", "N/mm", 1e-9, 1e5, "standard deviation of Ft between repeats").if_given(),
            kerf::number("chip_ratio", "1", 0.05, 50, "chip thickness / depth of cut").if_given(),
            kerf::number("chip_ratio_sd", "1", 1e-9, 50, "standard deviation of chip_ratio between repeats").if_given(),
+           kerf::number("curl_radius", "mm", -1e5, 1e5,
+                        "radius the chip curls with, positive away from the tool; compared as the curvature 1/radius")
+               .if_given(),
+           kerf::number("curl_radius_sd", "mm", 1e-9, 1e5, "standard deviation of curl_radius between repeats")
+               .if_given(),
            kerf::number("width", "mm", 1e-3, 1e4, "width of cut").if_given(),
            kerf::number("rake", "deg", -60, 85, "rake angle, from the normal of the cut plane"),
            kerf::number("speed", "m/min", 1e-9, 1e6, "cutting speed").if_given(),

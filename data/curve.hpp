@@ -25,14 +25,15 @@ struct CurvePoint {
   double depth = 0.0;  ///< depth of cut, mm
   Measured F_c;        ///< cutting force per unit width, N/mm
   Measured F_t;        ///< transverse force per unit width, N/mm; positive: tool pushed away from the work
-  std::optional<Measured> chip_ratio;  ///< chip thickness / depth of cut
-  double rake = 0.0;                   ///< rad
-  std::optional<double> width;         ///< of cut, mm
-  std::optional<double> speed;         ///< mm/s
-  std::optional<double> tool_radius;   ///< mm
-  std::string specimen;                ///< empty when none is named
-  int replicate = 1;                   ///< as given, else counted from 1 within equal depth, rake and specimen
-  int line = 0;                        ///< of the file, for messages
+  std::optional<Measured> chip_ratio;   ///< chip thickness / depth of cut
+  std::optional<Measured> curl_radius;  ///< of the chip, mm; positive curls away from the tool
+  double rake = 0.0;                    ///< rad
+  std::optional<double> width;          ///< of cut, mm
+  std::optional<double> speed;          ///< mm/s
+  std::optional<double> tool_radius;    ///< mm
+  std::string specimen;                 ///< empty when none is named
+  int replicate = 1;                    ///< as given, else counted from 1 within equal depth, rake and specimen
+  int line = 0;                         ///< of the file, for messages
 };
 
 /// Forces measured at several depths of cut, sorted by depth.
@@ -43,10 +44,10 @@ struct Curve {
 };
 
 /// Reads a CSV file whose header cells carry the unit: depth[um], Fc[N] or Fc[N/mm], Ft[...] and, optionally,
-/// Fc_sd[...], Ft_sd[...], chip_ratio, chip_ratio_sd, width[mm], rake[deg], speed[m/min], tool_radius[um], specimen,
-/// replicate, repeats. `#` begins a comment line; `#: rake = 15 deg` gives a column's constant value. Forces in N are
-/// divided by the width. Separators may be commas, semicolons (then decimals may be commas) or tabs. Throws InputError
-/// with file:line:column for everything that cannot be read without guessing.
+/// Fc_sd[...], Ft_sd[...], chip_ratio, chip_ratio_sd, curl_radius[mm], curl_radius_sd[mm], width[mm], rake[deg],
+/// speed[m/min], tool_radius[um], specimen, replicate, repeats. `#` begins a comment line; `#: rake = 15 deg` gives a
+/// column's constant value. Forces in N are divided by the width. Separators may be commas, semicolons (then decimals
+/// may be commas) or tabs. Throws InputError with file:line:column for everything that cannot be read without guessing.
 Curve read_curve(const std::filesystem::path& file);
 Curve parse_curve(std::string_view text, const std::string& name);
 

@@ -19,19 +19,24 @@ CuttingShare other(CuttingShare share) {
 }
 
 /// What a search found, with errors if its slopes are known or the budget still covers them.
-Fit conclude(const Objective& objective, SearchResult found) {
+Fit conclude(const Job& job, const Objective& objective, SearchResult found) {
   Fit fit{.assumption = assumption(objective.misfit()),
           .share = {},
           .at = std::move(found.best),
           .residuals = {},
           .identifiability = {},
           .at_jump = found.model ? found.model->at_jump() : CutMask(),
+          .resampling = {},
           .has_slopes = found.model.has_value(),
           .converged = found.converged,
           .reason = std::move(found.reason)};
   if (objective.misfit().edge_force()) fit.share = objective.misfit().edge_force()->cutting_share;
   fit.residuals = objective.misfit().residuals(fit.at);
-  if (found.model) fit.identifiability = identify(*found.model, objective.misfit(), objective.space());
+  if (!found.model) return fit;
+  const Misfit& misfit = objective.misfit();
+  fit.identifiability = identify(*found.model, misfit, objective.space(), job.derived);
+  add_profiles(fit.identifiability, *found.model, misfit, objective.space(), job.derived);
+  fit.resampling = resample(*found.model, misfit, objective.space(), job);
   return fit;
 }
 
@@ -69,8 +74,9 @@ class Calibrator {
     objective_.limit(all);
     complete_slopes(found);
     const std::optional<LocalModel> model = found.model;
-    result_.fit = conclude(objective_, std::move(found));
+    result_.fit = conclude(job_, objective_, std::move(found));
     if (model && job_.edge_force && job_.edge_force->compare) compare(*model);
+    if (model && job_.verify) verify(*model);
 
     result_.trace = objective_.trace();
     result_.failing_share = objective_.failing_share(result_.fit.at);
@@ -130,10 +136,11 @@ class Calibrator {
 
   Calibration give_up(Evaluation at) {
     result_.failing_share = objective_.failing_share(at);
-    result_.fit = conclude(objective_, {.best = std::move(at),
-                                        .converged = false,
-                                        .reason = "too many simulated cuts fail at the start",
-                                        .model = {}});
+    result_.fit = conclude(job_, objective_,
+                           {.best = std::move(at),
+                            .converged = false,
+                            .reason = "too many simulated cuts fail at the start",
+                            .model = {}});
     result_.trace = objective_.trace();
     result_.exit_code = ExitCode::too_many_failed_runs;
     result_.statement = state(job_, result_);
@@ -158,7 +165,7 @@ class Calibrator {
       objective_.trace("other edge assumption", model.base());
       SearchResult found = gauss_newton(objective_, model);
       complete_slopes(found);
-      result_.alternatives.push_back(conclude(objective_, std::move(found)));
+      result_.alternatives.push_back(conclude(job_, objective_, std::move(found)));
     } catch (...) {
       std::swap(misfit, misfit_);
       throw;
@@ -169,10 +176,28 @@ class Calibrator {
 
   /// A parameter that depends on the assumption is known no better than over all of them.
   void widen_verdicts() {
-    std::vector<ParameterEstimate>& parameters = result_.fit.identifiability.parameters;
-    for (std::size_t j = 0; j < parameters.size(); ++j) {
-      ParameterEstimate& p = parameters[j];
-      p.verdict = judge(p.value, p.standard_error, over_all_assumptions(result_, j), p.bounds);
+    Identifiability& known = result_.fit.identifiability;
+    for (std::vector<ParameterEstimate>* all : {&known.parameters, &known.derived})
+      for (ParameterEstimate& p : *all)
+        p.verdict = judge(p.value, p.standard_error, over_all_assumptions(result_, p.name), p.bounds);
+  }
+
+  /// Simulates every end of an interval that the budget still covers, over the cuts that the model knows.
+  void verify(const LocalModel& model) {
+    Identifiability& known = result_.fit.identifiability;
+    try {
+      for (std::vector<ParameterEstimate>* all : {&known.parameters, &known.derived})
+        for (ParameterEstimate& p : *all)
+          for (std::optional<ProfileEnd>* end : {&p.lower_end, &p.upper_end}) {
+            if (!*end) continue;
+            const Evaluation there = objective_.evaluate((*end)->point);
+            objective_.trace("end of the interval of " + p.name, there);
+            // A cut that fails there would lower chi^2 by being absent.
+            if (both(there.usable, model.known()) == model.known())
+              (*end)->simulated = misfit_.chi2(there, model.known());
+          }
+    } catch (const BudgetSpent&) {
+      // The ends without a simulation say so.
     }
   }
 
@@ -193,12 +218,12 @@ class Calibrator {
 
 }  // namespace
 
-Interval over_all_assumptions(const Calibration& calibration, std::size_t parameter) {
-  Interval all = calibration.fit.identifiability.parameters[parameter].interval;
+Interval over_all_assumptions(const Calibration& calibration, const std::string& name) {
+  Interval all = calibration.fit.identifiability.find(name)->interval;
   for (const Fit& fit : calibration.alternatives) {
-    if (parameter >= fit.identifiability.parameters.size()) continue;
-    const Interval& other = fit.identifiability.parameters[parameter].interval;
-    all = {std::min(all.lower, other.lower), std::max(all.upper, other.upper)};
+    const ParameterEstimate* other = fit.identifiability.find(name);
+    if (!other) continue;
+    all = {std::min(all.lower, other->interval.lower), std::max(all.upper, other->interval.upper)};
   }
   return all;
 }

@@ -6,6 +6,7 @@
 #include "inverse/identifiability.hpp"
 #include "inverse/job.hpp"
 #include "inverse/noise_audit.hpp"
+#include "inverse/left_out.hpp"
 #include "inverse/optimiser.hpp"
 #include "inverse/run_database.hpp"
 #include "models/base/error.hpp"
@@ -20,6 +21,7 @@ struct Fit {
   Residuals residuals;
   Identifiability identifiability;
   CutMask at_jump;          ///< cuts within a difference step of another branch; empty without slopes
+  Resampling resampling;
   bool has_slopes = false;  ///< false: the budget did not allow the differences that errors need
   bool converged = false;
   std::string reason;
@@ -46,6 +48,6 @@ Calibration calibrate(const Job& job, RunDatabase& database,
                       const std::function<void(const TraceEntry&)>& on_trace = {});
 
 /// The interval of a parameter over all edge assumptions: what may be claimed without knowing the edge.
-Interval over_all_assumptions(const Calibration& calibration, std::size_t parameter);
+Interval over_all_assumptions(const Calibration& calibration, const std::string& name);
 
 }  // namespace kerf::inverse

@@ -20,20 +20,66 @@ Json interval(const Interval& limits, const std::string& unit) {
   return Json::array({in_unit(limits.lower, unit), in_unit(limits.upper, unit)});
 }
 
-Json parameter(const ParameterEstimate& p) {
-  return {{"value", in_unit(p.value, p.unit)},
-          {"se", in_unit(p.standard_error, p.unit)},
-          {"interval", interval(p.interval, p.unit)},
-          {"unit", p.unit},
-          {"verdict", name(p.verdict)},
-          {"path", p.path},
-          {"bounds", interval(p.bounds, p.unit)}};
+Json end(const std::optional<ProfileEnd>& at) {
+  if (!at) return nullptr;
+  return {{"chi2_predicted", number(at->predicted)},
+          {"chi2_simulated", at->simulated ? number(*at->simulated) : Json()}};
 }
 
-Json parameters(const Identifiability& identifiability) {
+Json profile(const ParameterEstimate& p) {
+  Json values = Json::array(), chi2 = Json::array();
+  for (const auto& [value, least] : p.profile) {
+    values.push_back(in_unit(value, p.unit));
+    chi2.push_back(number(least));
+  }
+  return {{"value", std::move(values)}, {"chi2", std::move(chi2)}};
+}
+
+Json parameter(const ParameterEstimate& p) {
+  Json json{{"value", in_unit(p.value, p.unit)},
+            {"se", in_unit(p.standard_error, p.unit)},
+            {"interval", interval(p.interval, p.unit)},
+            {"unit", p.unit},
+            {"verdict", name(p.verdict)},
+            {"path", p.path},
+            {"bounds", interval(p.bounds, p.unit)},
+            {"ends", Json::array({end(p.lower_end), end(p.upper_end)})},
+            {"profile", profile(p)}};
+  if (p.trade_off)
+    json["trade_off"] = {{"with", p.trade_off->partner},
+                         {"exponent", number(p.trade_off->exponent)},
+                         {"relative_error", number(p.trade_off->relative_error)}};
+  return json;
+}
+
+Json parameters(const std::vector<ParameterEstimate>& estimates) {
   Json all = Json::object();
-  for (const ParameterEstimate& p : identifiability.parameters) all[p.name] = parameter(p);
+  for (const ParameterEstimate& p : estimates) all[p.name] = parameter(p);
   return all;
+}
+
+/// Every refit's estimates by name, in the units of the estimates themselves.
+Json resampling(const Fit& fit) {
+  std::vector<const ParameterEstimate*> order;
+  for (const ParameterEstimate& p : fit.identifiability.parameters) order.push_back(&p);
+  for (const ParameterEstimate& p : fit.identifiability.derived) order.push_back(&p);
+  const auto named = [&](const std::vector<double>& values) {
+    Json json = Json::object();
+    for (std::size_t j = 0; j < values.size(); ++j) json[order[j]->name] = in_unit(values[j], order[j]->unit);
+    return json;
+  };
+  const auto all = [&](const std::vector<LeftOut>& refits) {
+    Json json = Json::array();
+    for (const LeftOut& refit : refits) json.push_back({{"without", refit.what}, {"parameters", named(refit.values)}});
+    return json;
+  };
+  const Resampling& r = fit.resampling;
+  Json json{{"without_cut", all(r.without_cut)}, {"without_specimen", all(r.without_specimen)}};
+  if (r.bootstrap)
+    json["bootstrap"] = {{"specimens", r.bootstrap->specimens},
+                         {"draws", r.bootstrap->draws},
+                         {"sd", named(r.bootstrap->standard_deviations)}};
+  return json;
 }
 
 Json rows(const Eigen::MatrixXd& matrix) {
@@ -46,17 +92,13 @@ Json rows(const Eigen::MatrixXd& matrix) {
   return all;
 }
 
-std::string unit_of(std::size_t observable) {
-  return observable == static_cast<std::size_t>(Observable::chip_ratio) ? "1" : "N/m";
-}
-
 /// One observable of one cut. The fitted value is the simulated one and what the edge force adds to it.
 Json observable(const Job& job, const Fit& fit, const Misfit& misfit, std::size_t index, std::size_t k) {
   const RunRecord& run = fit.at.runs[index];
-  const std::array<Estimate, observable_count> all{run.F_c, run.F_t, run.chip_ratio};
+  const std::array<Estimate, observable_count> all{run.F_c, run.F_t, run.chip_ratio, run.chip_curvature};
   const double friction = ParameterSpace(job).friction(fit.at.point);
   const double edge = fit.residuals.edge_force * misfit.edge_share(static_cast<Observable>(k), friction);
-  const std::string unit = unit_of(k);
+  const std::string unit = observable_units[k];
   Json entry{{"unit", unit},
              {"simulated", in_unit(all[k].value, unit)},
              {"simulated_se", in_unit(all[k].standard_error, unit)},
@@ -66,7 +108,7 @@ Json observable(const Job& job, const Fit& fit, const Misfit& misfit, std::size_
   entry["measured"] = in_unit(measured->value, unit);
   entry["se"] = in_unit(measured->standard_error, unit);
   const auto row = static_cast<Eigen::Index>(index * observable_count + k);
-  entry["weighted_residual"] = fit.at.usable[index] ? number(-fit.residuals.weighted[row]) : Json(nullptr);
+  entry["weighted_residual"] = fit.at.usable[index] ? number(-fit.residuals.standardised[row]) : Json(nullptr);
   return entry;
 }
 
@@ -75,6 +117,7 @@ Json cut(const Job& job, const Fit& fit, const Misfit& misfit, std::size_t index
   const RunRecord& run = fit.at.runs[index];
   Json json{{"curve", job.curves[measured.curve].name},
             {"line", measured.row},
+            {"specimen", measured.specimen},
             {"depth_mm", measured.depth},
             {"rake_deg", in_unit(measured.rake, "deg")}};
   for (std::size_t k = 0; k < observable_count; ++k) json[observable_names[k]] = observable(job, fit, misfit, index, k);
@@ -119,7 +162,8 @@ void add_fit(Json& json, const Fit& fit) {
   json["chi2"] = number(fit.residuals.chi2);
   json["degrees_of_freedom"] = known.degrees_of_freedom;
   json["error_scale"] = number(known.error_scale);
-  json["parameters"] = parameters(known);
+  json["parameters"] = parameters(known.parameters);
+  json["derived"] = parameters(known.derived);
 }
 
 Json noise_audit(const NoiseAudit& audit, const OptimiserChoice& choice) {
@@ -155,6 +199,7 @@ Json identifiability(const Identifiability& known) {
   for (const double value : known.singular_values) values.push_back(number(value));
   return {{"names", std::move(names)},
           {"singular_values", std::move(values)},
+          {"condition", number(known.condition)},
           {"singular_vectors", rows(known.singular_vectors.transpose())},
           {"correlation", rows(known.correlation)},
           {"interval_half_width_in_se", number(known.quantile)}};
@@ -179,11 +224,10 @@ Json calibration_json(const Job& job, const Calibration& calibration, const Cali
   Json result{{"title", job.title}, {"statement", calibration.statement}};
   add_fit(result, fit);
   if (!calibration.alternatives.empty())
-    for (std::size_t j = 0; j < fit.identifiability.parameters.size(); ++j) {
-      const ParameterEstimate& p = fit.identifiability.parameters[j];
-      result["parameters"][p.name]["interval_over_assumptions"] =
-          interval(over_all_assumptions(calibration, j), p.unit);
-    }
+    for (const char* kind : {"parameters", "derived"})
+      for (auto& [name, json] : result[kind].items())
+        json["interval_over_assumptions"] =
+            interval(over_all_assumptions(calibration, name), json["unit"].get<std::string>());
   if (calibration.partial) result["partial"] = true;
   result["exit_code"] = static_cast<int>(calibration.exit_code);
   result["method"] = job.optimiser.method;
@@ -193,6 +237,7 @@ Json calibration_json(const Job& job, const Calibration& calibration, const Cali
   result["wall_s"] = cost.wall_seconds;
   result["noise_audit"] = calibration.audit ? noise_audit(*calibration.audit, job.optimiser) : Json(nullptr);
   result["identifiability"] = identifiability(fit.identifiability);
+  result["resampling"] = resampling(fit);
   result["alternatives"] = Json::array();
   for (const Fit& other : calibration.alternatives) add_fit(result["alternatives"].emplace_back(Json::object()), other);
   result["cuts"] = Json::array();

@@ -11,24 +11,8 @@ namespace {
 
 constexpr double normal_quantile = 1.959963984540054;  // 97.5 %
 constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double barely_seen = 1e-5;
 constexpr double unseen = 1e-9;  // singular values this far below the largest are rounding
-
-/// Weighted residuals with F_b held, where projecting it out would hide its column.
-Eigen::VectorXd residuals_at(const LocalModel& model, const Misfit& misfit, const ParameterSpace& space,
-                             const Eigen::VectorXd& point, double edge_force) {
-  const CutMask known = model.known();
-  const Observations simulated = model.predict(point);
-  const Observations& weights = misfit.weights();
-  Eigen::VectorXd residuals = Eigen::VectorXd::Zero(weights.size());
-  for (Eigen::Index i = 0; i < weights.rows(); ++i)
-    for (Eigen::Index k = 0; k < weights.cols() && known[static_cast<std::size_t>(i)]; ++k)
-      residuals[i * weights.cols() + k] =
-          weights(i, k) == 0
-              ? 0
-              : weights(i, k) * (simulated(i, k) - misfit.measured()(i, k) +
-                                 edge_force * misfit.edge_share(static_cast<Observable>(k), space.friction(point)));
-  return residuals;
-}
 
 /// Everything about the estimate that intervals need.
 struct Estimator {
@@ -39,46 +23,89 @@ struct Estimator {
   double edge_force;
   double chi2;
 
-  /// Columns: d residual / d search coordinate, then d residual / d F_b.
-  Eigen::MatrixXd jacobian() const {
-    const double tiny = 1e-5;
-    const Eigen::Index n = point.size();
-    Eigen::MatrixXd columns(misfit.weights().size(), n + (misfit.edge_force() ? 1 : 0));
-    for (Eigen::Index j = 0; j < n; ++j) {
-      Eigen::VectorXd above = point, below = point;
-      above[j] += tiny;
-      below[j] -= tiny;
-      columns.col(j) = (residuals_at(model, misfit, space, above, edge_force) -
-                        residuals_at(model, misfit, space, below, edge_force)) /
-                       (2 * tiny);
-    }
-    if (misfit.edge_force())
-      columns.col(n) = residuals_at(model, misfit, space, point, edge_force + 1) -
-                       residuals_at(model, misfit, space, point, edge_force);
-    return columns;
+  ModelMinimum with(const Restriction& restriction, const Eigen::VectorXd& start) const {
+    return minimise(model, misfit, space, start, space.lower(), space.upper(), restriction);
   }
 
-  /// Rise of the least chi^2 when parameter `j` (F_b is the last) is held at a coordinate.
-  double rise(Eigen::Index j, double coordinate) const {
+  /// The least chi^2 with parameter `j` (F_b is the last) held at a coordinate, or with a derived quantity at a value.
+  ModelMinimum held(Eigen::Index j, double coordinate) const {
     Eigen::VectorXd start = point;
-    if (j < point.size()) {
-      start[j] = coordinate;
-      return minimise(model, misfit, space, start, space.lower(), space.upper(), j).chi2 - chi2;
-    }
-    return minimise(model, misfit, space, start, space.lower(), space.upper(), {}, coordinate).chi2 - chi2;
+    if (j == point.size()) return with({.fixed_edge = coordinate}, start);
+    start[j] = coordinate;
+    return with({.fixed = j}, start);
   }
-
-  /// Where the rise reaches `allowed` between the estimate and a bound; the bound itself when it never does.
-  double limit(Eigen::Index j, double estimate, double bound, double allowed) const {
-    if (rise(j, bound) <= allowed) return bound;
-    double inside = estimate, outside = bound;
-    for (int i = 0; i < 40 && std::abs(outside - inside) > 1e-6 * std::abs(bound - estimate); ++i) {
-      const double middle = 0.5 * (inside + outside);
-      (rise(j, middle) <= allowed ? inside : outside) = middle;
-    }
-    return 0.5 * (inside + outside);
+  ModelMinimum held(const DerivedQuantity& quantity, double value) const {
+    return with({.held = &quantity, .held_value = value}, point);
   }
 };
+
+/// Where the rise of chi^2 reaches `allowed` between the estimate and a bound; the bound itself when it never does.
+/// `at` holds what is profiled at a coordinate.
+struct Limit {
+  double coordinate = 0;
+  std::optional<ProfileEnd> end;
+};
+
+template <class At>
+Limit find_limit(const At& at, double chi2, double estimate, double bound, double allowed) {
+  if (at(bound).chi2 - chi2 <= allowed) return {.coordinate = bound, .end = {}};
+  double inside = estimate, outside = bound;
+  for (int i = 0; i < 40 && std::abs(outside - inside) > 1e-6 * std::abs(bound - estimate); ++i) {
+    const double middle = 0.5 * (inside + outside);
+    (at(middle).chi2 - chi2 <= allowed ? inside : outside) = middle;
+  }
+  const double coordinate = 0.5 * (inside + outside);
+  const ModelMinimum there = at(coordinate);
+  return {.coordinate = coordinate, .end = ProfileEnd{.point = there.point, .predicted = there.chi2, .simulated = {}}};
+}
+
+/// Least and largest value of a derived quantity within the bounds of the search.
+Interval range_of(const DerivedQuantity& quantity, const std::vector<FreeParameter>& free) {
+  Interval range;
+  for (const DerivedQuantity::Term& term : quantity.terms) {
+    double low = 1, high = 1;
+    for (std::size_t j = 0; j < free.size(); ++j) {
+      if (term.powers[j] == 0) continue;
+      const double a = std::pow(free[j].lower, term.powers[j]), b = std::pow(free[j].upper, term.powers[j]);
+      low *= std::min(a, b);
+      high *= std::max(a, b);
+    }
+    range.lower += term.factor * (term.factor > 0 ? low : high);
+    range.upper += term.factor * (term.factor > 0 ? high : low);
+  }
+  return range;
+}
+
+/// d quantity / d ln(parameter), F_b last.
+Eigen::VectorXd logarithmic_slope(const DerivedQuantity& quantity, const Eigen::VectorXd& values, Eigen::Index all) {
+  Eigen::VectorXd slope = Eigen::VectorXd::Zero(all);
+  for (const DerivedQuantity::Term& term : quantity.terms) {
+    double product = term.factor;
+    for (Eigen::Index j = 0; j < values.size(); ++j)
+      product *= std::pow(values[j], term.powers[static_cast<std::size_t>(j)]);
+    for (Eigen::Index j = 0; j < values.size(); ++j) slope[j] += product * term.powers[static_cast<std::size_t>(j)];
+  }
+  return slope;
+}
+
+/// The partner that moves most strictly with parameter `j` along the data's blind direction: of all p q^a the one
+/// with a = -C_jk / C_kk is known best, C being the covariance of the logarithms.
+std::optional<TradeOff> trade_off(Eigen::Index j, const Eigen::MatrixXd& covariance,
+                                  const std::vector<ParameterEstimate>& parameters) {
+  std::optional<TradeOff> best;
+  double strictest = 0.9;  // correlation below which one partner explains little
+  for (Eigen::Index k = 0; k < covariance.cols(); ++k) {
+    if (k == j) continue;
+    const double correlation = covariance(j, k) / std::sqrt(covariance(j, j) * covariance(k, k));
+    if (!(std::abs(correlation) > strictest)) continue;
+    strictest = std::abs(correlation);
+    const double a = -covariance(j, k) / covariance(k, k);  // leaves the least variance
+    best = TradeOff{.partner = parameters[static_cast<std::size_t>(k)].name,
+                    .exponent = a,
+                    .relative_error = std::sqrt(std::max(0.0, covariance(j, j) + a * covariance(j, k)))};
+  }
+  return best;
+}
 
 bool nearly(double a, double b, double width) {
   return std::abs(a - b) <= 1e-6 * width;
@@ -103,9 +130,10 @@ const char* name(Verdict verdict) {
 }
 
 const ParameterEstimate* Identifiability::find(const std::string& wanted) const {
-  const auto found = std::find_if(parameters.begin(), parameters.end(),
-                                  [&](const ParameterEstimate& parameter) { return parameter.name == wanted; });
-  return found == parameters.end() ? nullptr : &*found;
+  for (const std::vector<ParameterEstimate>* all : {&parameters, &derived})
+    for (const ParameterEstimate& estimate : *all)
+      if (estimate.name == wanted) return &estimate;
+  return nullptr;
 }
 
 Verdict judge(double value, double standard_error, const Interval& interval, const Interval& bounds) {
@@ -119,9 +147,30 @@ Verdict judge(double value, double standard_error, const Interval& interval, con
   return std::max(standard_error, half_width) <= std::abs(value) / 3.0 ? Verdict::measured : Verdict::bounded;
 }
 
-Identifiability identify(const LocalModel& model, const Misfit& misfit, const ParameterSpace& space) {
-  const Residuals here = misfit.residuals(model.base().simulated, model.base().point, model.known());
-  const Estimator estimator{model, misfit, space, model.base().point, here.edge_force, here.chi2};
+Eigen::MatrixXd residual_slopes(const LocalModel& model, const Misfit& misfit, const Eigen::VectorXd& point,
+                                double edge_force) {
+  const double tiny = 1e-5;
+  const Eigen::Index n = point.size();
+  const CutMask known = model.known();
+  Eigen::MatrixXd columns(misfit.residual_count(), n + (misfit.edge_force() ? 1 : 0));
+  const auto residuals = [&](const Eigen::VectorXd& at, double edge) {  // projecting F_b out would hide its column
+    return misfit.residuals_with(edge, model.predict(at), at, known);
+  };
+  for (Eigen::Index j = 0; j < n; ++j) {
+    Eigen::VectorXd above = point, below = point;
+    above[j] += tiny;
+    below[j] -= tiny;
+    columns.col(j) = (residuals(above, edge_force) - residuals(below, edge_force)) / (2 * tiny);
+  }
+  if (misfit.edge_force()) columns.col(n) = residuals(point, edge_force + 1) - residuals(point, edge_force);
+  return columns;
+}
+
+Identifiability identify(const LocalModel& model, const Misfit& misfit, const ParameterSpace& space,
+                         const std::vector<DerivedQuantity>& derived, const std::optional<Eigen::VectorXd>& estimated) {
+  const Eigen::VectorXd& centre_point = estimated ? *estimated : model.base().point;
+  const Residuals here = misfit.residuals(model.predict(centre_point), centre_point, model.known());
+  const Estimator estimator{model, misfit, space, centre_point, here.edge_force, here.chi2};
   const Eigen::Index n = space.dimension(), all = n + (misfit.edge_force() ? 1 : 0);
 
   Identifiability result;
@@ -136,7 +185,7 @@ Identifiability identify(const LocalModel& model, const Misfit& misfit, const Pa
 
   // One unit for every column, its logarithm, so that singular values compare. An edge force of zero has none: the
   // largest measured F_t stands in.
-  Eigen::MatrixXd jacobian = estimator.jacobian();
+  Eigen::MatrixXd jacobian = residual_slopes(model, misfit, centre_point, here.edge_force);
   Eigen::VectorXd unit(all);  // d(coordinate or F_b) / d ln(parameter)
   for (Eigen::Index j = 0; j < n; ++j) {
     const double value = space.value(j, estimator.point[j]);
@@ -150,11 +199,16 @@ Identifiability identify(const LocalModel& model, const Misfit& misfit, const Pa
   result.singular_values = Eigen::VectorXd::Zero(all);
   result.singular_values.head(svd.singularValues().size()) = svd.singularValues();
   result.singular_vectors = svd.matrixV();
+  const double smallest = result.singular_values[all - 1];
+  result.condition = smallest > unseen * result.singular_values[0] ? result.singular_values[0] / smallest : infinity;
 
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(all, all);
+  Eigen::MatrixXd floored = covariance;  // what is not seen varies widely instead of without limit
   std::vector<bool> seen(static_cast<std::size_t>(all), true);
   for (Eigen::Index c = 0; c < all; ++c) {
     const Eigen::VectorXd vector = result.singular_vectors.col(c);
+    const double floor = std::max(result.singular_values[c], barely_seen * result.singular_values[0]);
+    floored += vector * vector.transpose() / (floor * floor);
     if (result.singular_values[c] > unseen * result.singular_values[0]) {
       covariance += vector * vector.transpose() / (result.singular_values[c] * result.singular_values[c]);
       continue;
@@ -194,13 +248,69 @@ Identifiability identify(const LocalModel& model, const Misfit& misfit, const Pa
                                   ? std::sqrt(covariance(j, j)) * unit[j] * slope * result.error_scale
                                   : infinity;
     const double centre = is_edge ? here.edge_force : estimator.point[j];
-    const double lower = estimator.limit(j, centre, is_edge ? estimate.bounds.lower : space.lower()[j], allowed);
-    const double upper = estimator.limit(j, centre, is_edge ? estimate.bounds.upper : space.upper()[j], allowed);
+    const auto at = [&](double coordinate) { return estimator.held(j, coordinate); };
+    const Limit low = find_limit(at, here.chi2, centre, is_edge ? estimate.bounds.lower : space.lower()[j], allowed);
+    const Limit high = find_limit(at, here.chi2, centre, is_edge ? estimate.bounds.upper : space.upper()[j], allowed);
+    const double lower = low.coordinate, upper = high.coordinate;
+    estimate.lower_end = low.end;
+    estimate.upper_end = high.end;
     estimate.interval = is_edge ? Interval{lower, upper} : Interval{space.value(j, lower), space.value(j, upper)};
     estimate.verdict = judge(estimate.value, estimate.standard_error, estimate.interval, estimate.bounds);
     result.parameters.push_back(std::move(estimate));
   }
+  for (Eigen::Index j = 0; j < all; ++j)
+    if (ParameterEstimate& p = result.parameters[static_cast<std::size_t>(j)]; p.verdict != Verdict::measured)
+      p.trade_off = trade_off(j, floored * result.error_scale * result.error_scale, result.parameters);
+
+  const Eigen::VectorXd values = space.values(estimator.point);
+  for (const DerivedQuantity& quantity : derived) {
+    ParameterEstimate estimate{.name = quantity.name,
+                               .path = quantity.expression,
+                               .unit = quantity.unit,
+                               .interval = {},
+                               .bounds = range_of(quantity, space.parameters())};
+    const Eigen::VectorXd slope = logarithmic_slope(quantity, values, all);
+    estimate.value = quantity.of(std::vector<double>(values.begin(), values.end()));
+    estimate.standard_error = std::sqrt(slope.dot(covariance * slope)) * result.error_scale;
+    for (Eigen::Index c = 0; c < all; ++c)
+      if (result.singular_values[c] <= unseen * result.singular_values[0] &&
+          std::abs(result.singular_vectors.col(c).dot(slope)) > 1e-6 * slope.norm())
+        estimate.standard_error = infinity;
+    const auto at = [&](double value) { return estimator.held(quantity, value); };
+    const Limit low = find_limit(at, here.chi2, estimate.value, estimate.bounds.lower, allowed);
+    const Limit high = find_limit(at, here.chi2, estimate.value, estimate.bounds.upper, allowed);
+    estimate.interval = {low.coordinate, high.coordinate};
+    estimate.lower_end = low.end;
+    estimate.upper_end = high.end;
+    estimate.verdict = judge(estimate.value, estimate.standard_error, estimate.interval, estimate.bounds);
+    result.derived.push_back(std::move(estimate));
+  }
   return result;
+}
+
+void add_profiles(Identifiability& known, const LocalModel& model, const Misfit& misfit, const ParameterSpace& space,
+                  const std::vector<DerivedQuantity>& derived) {
+  constexpr int points = 17;
+  const Residuals here = misfit.residuals(model.base().simulated, model.base().point, model.known());
+  const Estimator estimator{model, misfit, space, model.base().point, here.edge_force, here.chi2};
+  const auto draw = [&](ParameterEstimate& p, const auto& at) {
+    // A third further than the interval, which then does not end at the edge of the picture.
+    const double low = std::max(p.bounds.lower, p.interval.lower - (p.value - p.interval.lower) / 3);
+    const double high = std::min(p.bounds.upper, p.interval.upper + (p.interval.upper - p.value) / 3);
+    if (!std::isfinite(high - low)) return;
+    for (int i = 0; i < points; ++i) {
+      const double value = low + (high - low) * i / (points - 1);
+      p.profile.emplace_back(value, at(value).chi2);
+    }
+  };
+  const Eigen::Index n = space.dimension();
+  for (std::size_t j = 0; j < known.parameters.size(); ++j) {
+    const auto index = static_cast<Eigen::Index>(j);
+    draw(known.parameters[j],
+         [&](double value) { return estimator.held(index, index < n ? space.coordinate(index, value) : value); });
+  }
+  for (std::size_t q = 0; q < derived.size(); ++q)
+    draw(known.derived[q], [&](double value) { return estimator.held(derived[q], value); });
 }
 
 }  // namespace kerf::inverse

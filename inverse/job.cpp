@@ -10,6 +10,7 @@
 #include "data/curve.hpp"
 #include "forward/scene/preset.hpp"
 #include "forward/scene/scene.hpp"
+#include "inverse/derived.hpp"
 #include "inverse/parameter_space.hpp"
 #include "inverse/sweep_axis.hpp"
 #include "models/base/atomic_file.hpp"
@@ -76,6 +77,17 @@ FreeParameter read_free(const Values& values, const Document& scene) {
                                    values.where("start"), values.text("start"), values.text("lower"),
                                    values.text("upper")));
   }
+  if (values.has("prior") != values.has("prior_error"))
+    throw InputError(fmt::format("{}: [[free]] prior and prior_error go together", values.where("path")));
+  if (values.has("prior")) {
+    Parameter error = parameter;
+    error.lower = 0;
+    error.upper = std::numeric_limits<double>::infinity();
+    free.prior = {read_quantity(values, "prior", parameter), read_quantity(values, "prior_error", error)};
+    if (!(free.prior->standard_error > 0))
+      throw InputError(fmt::format("{}: [[free]] prior_error = \"{}\" must be positive", values.where("prior_error"),
+                                   values.text("prior_error")));
+  }
   // "coefficient" says nothing alone: friction.coefficient is friction.
   const std::string block = free.path.substr(0, free.path.rfind('.'));
   free.name = values.has("name")                      ? values.text("name")
@@ -129,6 +141,27 @@ std::optional<Estimate> estimate(const std::optional<data::Measured>& measured) 
   return Estimate{measured->value, measured->standard_error().value_or(0.0)};
 }
 
+/// The curvature 1/R of a measured curl radius.
+std::optional<Estimate> curvature(const std::optional<data::Measured>& radius) {
+  const std::optional<Estimate> measured = estimate(radius);
+  if (!measured) return std::nullopt;
+  return Estimate{1 / measured->value, measured->standard_error / (measured->value * measured->value)};
+}
+
+std::optional<Estimate> measured_value(const data::CurvePoint& point, Observable observable) {
+  switch (observable) {
+    case Observable::F_c:
+      return estimate(point.F_c);
+    case Observable::F_t:
+      return estimate(point.F_t);
+    case Observable::chip_ratio:
+      return estimate(point.chip_ratio);
+    case Observable::chip_curvature:
+      break;
+  }
+  return curvature(point.curl_radius);
+}
+
 void add_cuts(Job& job, const Values& values, const data::Curve& curve) {
   const std::size_t before = job.cuts.size();
   for (const data::CurvePoint& point : curve.points) {
@@ -139,11 +172,11 @@ void add_cuts(Job& job, const Values& values, const data::Curve& curve) {
                     .row = static_cast<std::size_t>(point.line),
                     .depth = point.depth,
                     .rake = point.rake,
+                    .specimen = point.specimen.empty() ? job.curves.back().name : point.specimen,
+                    .specimen_error = values.number("specimen_error"),
                     .measured = {}};
     for (const Observable observable : job.observables)
-      cut.measured[static_cast<std::size_t>(observable)] = estimate(observable == Observable::F_c   ? point.F_c
-                                                                    : observable == Observable::F_t ? point.F_t
-                                                                                                    : point.chip_ratio);
+      cut.measured[static_cast<std::size_t>(observable)] = measured_value(point, observable);
     job.cuts.push_back(cut);
   }
   if (job.cuts.size() == before)
@@ -245,12 +278,15 @@ Job read_job(const fs::path& file, const std::string& name, const Locate& locate
           .scene = base,
           .free = read_free_parameters(contents, base),
           .ties = {},
+          .derived = {},
           .observables = {},
           .edge_force = {},
           .budget = {},
           .optimiser = {},
           .coarse = {.closed_form = false, .scene = base}};
   job.ties = read_ties(contents, base, job.free);
+  for (const Values& values : contents.all("derived")) job.derived.push_back(read_derived(values, job));
+  job.verify = contents.at("uncertainty").flag("verify");
   for (std::size_t k = 0; k < observable_count; ++k) {
     const std::vector<std::string>& wanted = top.list("observables");
     if (std::find(wanted.begin(), wanted.end(), observable_names[k]) != wanted.end())

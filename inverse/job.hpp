@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <functional>
@@ -15,28 +16,40 @@
 namespace kerf::inverse {
 
 /// What a measured cut and a simulated cut are compared by.
-enum class Observable : std::size_t { F_c, F_t, chip_ratio };
-inline constexpr std::size_t observable_count = 3;
-inline constexpr std::array<const char*, observable_count> observable_names{"F_c", "F_t", "chip_ratio"};
+enum class Observable : std::size_t { F_c, F_t, chip_ratio, chip_curvature };
+inline constexpr std::size_t observable_count = 4;
+inline constexpr std::array<const char*, observable_count> observable_names{"F_c", "F_t", "chip_ratio",
+                                                                            "chip_curvature"};
+/// Unit in which each is shown.
+inline constexpr std::array<const char*, observable_count> observable_units{"N/m", "N/m", "1", "1/mm"};
+/// Forces and thickness keep their sign and are compared to simulations on a logarithmic scale of the model; the
+/// transverse force and the curvature may pass through zero.
+constexpr bool is_positive(std::size_t observable) {
+  return observable == static_cast<std::size_t>(Observable::F_c) ||
+         observable == static_cast<std::size_t>(Observable::chip_ratio);
+}
 
 /// One measured point of a curve. An observable that was not measured, or that the job does not use, is absent.
 struct MeasuredCut {
-  std::size_t curve = 0;                                           ///< index into Job::curves
-  std::size_t row = 0;                                             ///< line of the point in its file
-  double depth = 0;                                                ///< mm
-  double rake = 0;                                                 ///< rad
-  std::array<std::optional<Estimate>, observable_count> measured;  ///< N/mm, N/mm, 1
+  std::size_t curve = 0;      ///< index into Job::curves
+  std::size_t row = 0;        ///< line of the point in its file
+  double depth = 0;           ///< mm
+  double rake = 0;            ///< rad
+  std::string specimen;       ///< that was cut; its curve's name when none is named
+  double specimen_error = 0;  ///< share by which everything measured on this specimen is off together
+  std::array<std::optional<Estimate>, observable_count> measured;  ///< N/mm, N/mm, 1, 1/mm
 };
 
 /// A number of the scene that the calibration is to find.
 struct FreeParameter {
-  std::string path;             ///< dotted path into the scene
-  std::string name;             ///< short name in results
-  std::string unit;             ///< unit in which it is shown, as the scene declares it
-  double lower = 0, upper = 0;  ///< consistent units
-  bool logarithmic = true;      ///< searched in ln(value); otherwise in value / (upper - lower)
-  std::optional<double> start;  ///< consistent units; without it a closed form is asked
-  bool key = false;             ///< the job has failed (exit code 6) when this one cannot be identified
+  std::string path;               ///< dotted path into the scene
+  std::string name;               ///< short name in results
+  std::string unit;               ///< unit in which it is shown, as the scene declares it
+  double lower = 0, upper = 0;    ///< consistent units
+  bool logarithmic = true;        ///< searched in ln(value); otherwise in value / (upper - lower)
+  std::optional<double> start;    ///< consistent units; without it a closed form is asked
+  std::optional<Estimate> prior;  ///< what is known of it beforehand, a normal distribution; consistent units
+  bool key = false;               ///< the job has failed (exit code 6) when this one cannot be identified
 };
 
 /// path = factor * of, for every cut: strengths that follow the yield stress.
@@ -44,6 +57,30 @@ struct Tie {
   std::string path;
   double factor = 1;
   std::string of;
+};
+
+/// A quantity that follows from the parameters: a sum of products of their powers, in consistent units.
+struct DerivedQuantity {
+  struct Term {
+    double factor = 1;
+    std::vector<double> powers;  ///< of the free parameters, in their order
+  };
+  std::string name, unit, expression;
+  std::vector<Term> terms;
+
+  /// `values` of the free parameters; T is double or an automatic derivative.
+  template <class T>
+  T of(const std::vector<T>& values) const {
+    using std::pow;
+    T sum(0.0);
+    for (const Term& term : terms) {
+      T product(term.factor);
+      for (std::size_t j = 0; j < values.size(); ++j)
+        if (term.powers[j] != 0) product *= pow(values[j], term.powers[j]);
+      sum += product;
+    }
+    return sum;
+  }
 };
 
 /// How much of the edge force F_b appears in F_c: nothing, or its Coulomb friction mu F_b (theory, Eq. (1)).
@@ -103,11 +140,13 @@ struct Job {
   Document scene;  ///< the base scene
   std::vector<FreeParameter> free;
   std::vector<Tie> ties;
+  std::vector<DerivedQuantity> derived;
   std::vector<Observable> observables;
   std::optional<EdgeForce> edge_force;
   Budget budget;
   OptimiserChoice optimiser;
   Coarse coarse;
+  bool verify = false;     ///< simulate the ends of the 95 % intervals where the budget covers them
   double discrepancy = 0;  ///< relative error that the model is granted in every observable
 
   /// SHA-256 of everything that decides the answer.

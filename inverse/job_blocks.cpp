@@ -32,7 +32,11 @@ std::vector<Block> declare() {
                            "what differs from the scene in this curve's cuts, written PATH=VALUE, such as "
                            "\"bridging.tool=ignores\"")
                           .if_given(),
-                      text("specimen", "only the points of this specimen").if_given()},
+                      text("specimen", "only the points of this specimen").if_given(),
+                      number("specimen_error", "1", 0, 1,
+                             "share by which all that was measured on one specimen is off together (its own toughness, "
+                             "its width); a specimen is a label of the file, or the whole file")
+                          .or_else("0")},
        .required = true,
        .repeated = true},
       {.path = "free",
@@ -43,6 +47,8 @@ std::vector<Block> declare() {
             quantity("lower", "smallest value searched"), quantity("upper", "largest value searched"),
             text("scale", "how the search steps: by factors, or by differences", {"log", "linear"}).or_else("log"),
             quantity("start", "first value tried; without it a closed form is asked").if_given(),
+            quantity("prior", "what is known of it beforehand: the mean of a normal distribution").if_given(),
+            quantity("prior_error", "the standard deviation of that knowledge").if_given(),
             text("name", "its name in results; the last part of the path if absent").if_given(),
             flag("key", "exit with code 6 when the data cannot tell this parameter").or_else("false")},
        .required = true,
@@ -53,6 +59,21 @@ std::vector<Block> declare() {
        .parameters = {text("path", "the number that follows"), number("equals", "1", 0, 1e9, "the factor"),
                       text("of", "the number that leads")},
        .repeated = true},
+      {.path = "derived",
+       .variant = "",
+       .meaning = "a quantity that follows from the parameters, reported with its own interval",
+       .parameters = {text("name", "its name in results"),
+                      text("expression",
+                           "a sum of products of powers of names or paths, such as \"elastic_modulus * toughness / "
+                           "strength^2\""),
+                      text("unit", "unit in which it is shown")},
+       .repeated = true},
+      {.path = "uncertainty",
+       .variant = "",
+       .meaning = "what is spent on intervals beyond the slopes",
+       .parameters =
+           {flag("verify", "simulate the ends of the 95 % intervals where max_runs covers them").or_else("false")},
+       .required = true},
       {.path = "edge_force",
        .variant = "",
        .meaning = "a force per width on the edge of the real tool that the simulated one, being sharp, does not feel; "

@@ -16,7 +16,7 @@ class CutResiduals : public ceres::CostFunction {
  public:
   CutResiduals(Objective& objective, const Evaluation& start)
       : objective_(objective), compared_(start.usable), last_(start), best_(start) {
-    set_num_residuals(static_cast<int>(objective.misfit().weights().size()));
+    set_num_residuals(static_cast<int>(objective.misfit().residual_count()));
     mutable_parameter_block_sizes()->push_back(static_cast<int>(objective.space().dimension()));
   }
 

@@ -9,9 +9,9 @@
 
 namespace kerf::inverse {
 
-/// The observables near a simulated point: ln F_c, F_t and ln(chip ratio) linear in the search coordinates. Slopes come
-/// from differences of simulations and are then improved by every further simulation (Broyden's update). A difference
-/// never spans two branches of the cut (touching, bending), where slopes mean nothing.
+/// The observables near a simulated point: ln F_c, F_t, ln(chip ratio) and the chip curvature linear in the search
+/// coordinates. Slopes come from differences of simulations and are then improved by every further simulation
+/// (Broyden's update). A difference never spans two branches of the cut (touching, bending), where slopes mean nothing.
 class LocalModel {
  public:
   /// Slopes by one-sided differences inside the bounds (two-sided ones if the job wants them central), all as one
@@ -62,6 +62,7 @@ class LocalModel {
 
  private:
   explicit LocalModel(Evaluation base);
+  static bool is_logarithmic(Eigen::Index observable) { return is_positive(static_cast<std::size_t>(observable)); }
   /// Change of one transformed observable of `cut` between the base and a run.
   double change(Eigen::Index cut, Eigen::Index observable, double simulated) const;
 
@@ -78,10 +79,18 @@ struct ModelMinimum {
   double chi2 = 0;  ///< over the cuts the model knows
 };
 
-/// Least squares over (point, F_b) inside [lower, upper] and the bounds of F_b, by Ceres. `fixed` names a coordinate
-/// that stays as it is in `start`; `fixed_edge` holds F_b.
+/// What a minimisation is not free to do.
+struct Restriction {
+  std::optional<Eigen::Index> fixed = {};  ///< coordinate that stays as it is in the start
+  std::optional<double> fixed_edge = {};   ///< F_b
+  const DerivedQuantity* held = nullptr;   ///< keeps `held_value`, by a residual too stiff to matter
+  double held_value = 0;
+  std::vector<double> multiplicity = {};  ///< how often each cut counts; empty: once
+};
+
+/// Least squares over (point, F_b) inside [lower, upper] and the bounds of F_b, by Ceres.
 ModelMinimum minimise(const LocalModel& model, const Misfit& misfit, const ParameterSpace& space,
                       const Eigen::VectorXd& start, const Eigen::VectorXd& lower, const Eigen::VectorXd& upper,
-                      std::optional<Eigen::Index> fixed = {}, std::optional<double> fixed_edge = {});
+                      const Restriction& restriction = {});
 
 }  // namespace kerf::inverse

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "models/base/error.hpp"
 
@@ -13,9 +14,14 @@ namespace {
 constexpr Eigen::Index F_c = static_cast<Eigen::Index>(Observable::F_c);
 constexpr Eigen::Index F_t = static_cast<Eigen::Index>(Observable::F_t);
 constexpr Eigen::Index chip_ratio = static_cast<Eigen::Index>(Observable::chip_ratio);
+constexpr Eigen::Index chip_curvature = static_cast<Eigen::Index>(Observable::chip_curvature);
+
+/// Column of a curve that holds the scatter of an observable.
+constexpr std::array<const char*, observable_count> error_columns{"Fc_sd", "Ft_sd", "chip_ratio_sd", "curl_radius_sd"};
 
 std::array<double, observable_count> simulation_errors(const RunRecord& run) {
-  return {run.F_c.standard_error, run.F_t.standard_error, run.chip_ratio.standard_error};
+  return {run.F_c.standard_error, run.F_t.standard_error, run.chip_ratio.standard_error,
+          run.chip_curvature.standard_error};
 }
 
 Eigen::Index rows(const std::vector<MeasuredCut>& cuts) {
@@ -39,12 +45,14 @@ Eigen::RowVectorXd observations(const RunRecord& run) {
   row[F_c] = run.F_c.value;
   row[F_t] = run.F_t.value;
   row[chip_ratio] = run.chip_ratio.value;
+  row[chip_curvature] = run.chip_curvature.value;
   return row;
 }
 
 Misfit::Misfit(const Job& job, const ParameterSpace& space) : space_(&space), edge_force_(job.edge_force) {
   const auto columns = static_cast<Eigen::Index>(observable_count);
-  measured_ = weights_ = errors_ = Observations::Zero(rows(job.cuts), columns);
+  measured_ = weights_ = errors_ = common_errors_ = Observations::Zero(rows(job.cuts), columns);
+  std::map<std::pair<std::string, Eigen::Index>, Common> commons;  // by specimen and kind of measurement
   for (Eigen::Index i = 0; i < rows(job.cuts); ++i) {
     const MeasuredCut& cut = job.cuts[static_cast<std::size_t>(i)];
     for (Eigen::Index k = 0; k < columns; ++k) {
@@ -54,15 +62,17 @@ Misfit::Misfit(const Job& job, const ParameterSpace& space) : space_(&space), ed
       errors_(i, k) = std::hypot(measured->standard_error, job.discrepancy * measured->value);
       if (!(errors_(i, k) > 0))
         throw InputError(
-            fmt::format("{}:{}: {} has no standard error to weigh it by; add a column {}_sd, or give [discrepancy] "
+            fmt::format("{}:{}: {} has no standard error to weigh it by; add a column {}, or give [discrepancy] "
                         "relative in the job",
                         job.curves[cut.curve].name, cut.row, observable_names[static_cast<std::size_t>(k)],
-                        k == F_c   ? "Fc"
-                        : k == F_t ? "Ft"
-                                   : "chip_ratio"));
+                        error_columns[static_cast<std::size_t>(k)]));
       weights_(i, k) = 1.0 / errors_(i, k);
+      if (cut.specimen_error == 0) continue;
+      common_errors_(i, k) = cut.specimen_error * measured->value;
+      commons[{cut.specimen, std::max(k, F_t)}].values.emplace_back(i, k);  // one dynamometer, one width: both forces
     }
   }
+  for (auto& [specimen, common] : commons) commons_.push_back(std::move(common));
 }
 
 bool Misfit::is_usable(std::size_t cut, const RunRecord& run) const {
@@ -70,7 +80,7 @@ bool Misfit::is_usable(std::size_t cut, const RunRecord& run) const {
   const Eigen::RowVectorXd simulated = observations(run);
   for (Eigen::Index k = 0; k < simulated.size(); ++k) {
     if (weights_(static_cast<Eigen::Index>(cut), k) == 0) continue;
-    if (!std::isfinite(simulated[k]) || (k != F_t && simulated[k] <= 0)) return false;
+    if (!std::isfinite(simulated[k]) || (is_positive(static_cast<std::size_t>(k)) && simulated[k] <= 0)) return false;
   }
   return true;
 }
@@ -93,7 +103,7 @@ Misfit Misfit::with_share(CuttingShare share) const {
 }
 
 double Misfit::edge_share(Observable observable, double friction) const {
-  if (!edge_force_ || observable == Observable::chip_ratio) return 0;
+  if (!edge_force_ || observable >= Observable::chip_ratio) return 0;  // an edge shapes no chip
   if (observable == Observable::F_t) return 1;
   return edge_force_->cutting_share == CuttingShare::friction ? friction : 0;
 }
@@ -101,7 +111,7 @@ double Misfit::edge_share(Observable observable, double friction) const {
 Residuals Misfit::residuals(const Observations& simulated, const Eigen::VectorXd& point, const CutMask& mask) const {
   const double friction = space_->friction(point);
   const Eigen::Index n = weights_.rows(), m = weights_.cols();
-  Eigen::VectorXd sharp = Eigen::VectorXd::Zero(n * m), edge = Eigen::VectorXd::Zero(n * m);
+  Eigen::VectorXd sharp = Eigen::VectorXd::Zero(residual_count()), edge = sharp;
   Residuals result;
   for (Eigen::Index i = 0; i < n; ++i) {
     if (!mask[static_cast<std::size_t>(i)]) continue;
@@ -112,13 +122,49 @@ Residuals Misfit::residuals(const Observations& simulated, const Eigen::VectorXd
       ++result.compared;
     }
   }
+  result.standardised = sharp.head(n * m);
+  const Eigen::VectorXd raw_edge = edge.head(n * m);
+  whiten(mask, sharp.data());
+  whiten(mask, edge.data());
   if (edge_force_) {
     const double best = edge.squaredNorm() > 0 ? -edge.dot(sharp) / edge.squaredNorm() : 0;
     result.edge_force = std::clamp(best, edge_force_->lower, edge_force_->upper);
   }
   result.weighted = sharp + result.edge_force * edge;
+  result.standardised += result.edge_force * raw_edge;
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index k = 0; k < m; ++k)
+      result.standardised[i * m + k] /= std::hypot(1.0, common_errors_(i, k) * weights_(i, k));
+  append_priors(point, result.weighted);
+  result.compared += static_cast<int>(residual_count() - n * m);
   result.chi2 = result.weighted.squaredNorm();
   return result;
+}
+
+void Misfit::append_priors(const Eigen::VectorXd& point, Eigen::VectorXd& residuals) const {
+  const Eigen::VectorXd values = space_->values(point);
+  add_priors(std::vector<double>(values.begin(), values.end()), residuals.data() + weights_.size());
+}
+
+Eigen::Index Misfit::residual_count() const {
+  const std::vector<FreeParameter>& free = space_->parameters();
+  return weights_.size() +
+         std::count_if(free.begin(), free.end(), [](const FreeParameter& p) { return p.prior.has_value(); });
+}
+
+Eigen::VectorXd Misfit::residuals_with(double edge_force, const Observations& simulated, const Eigen::VectorXd& point,
+                                       const CutMask& mask) const {
+  const double friction = space_->friction(point);
+  Eigen::VectorXd residuals = Eigen::VectorXd::Zero(residual_count());
+  for (Eigen::Index i = 0; i < weights_.rows(); ++i)
+    for (Eigen::Index k = 0; k < weights_.cols() && mask[static_cast<std::size_t>(i)]; ++k)
+      if (weights_(i, k) != 0)
+        residuals[i * weights_.cols() + k] =
+            weights_(i, k) *
+            (simulated(i, k) - measured_(i, k) + edge_force * edge_share(static_cast<Observable>(k), friction));
+  whiten(mask, residuals.data());
+  append_priors(point, residuals);
+  return residuals;
 }
 
 Residuals Misfit::residuals(const Evaluation& evaluation) const {
@@ -131,6 +177,8 @@ double Misfit::chi2(const Evaluation& evaluation, const CutMask& mask) const {
 
 double Misfit::chi2_noise(const Evaluation& evaluation, double noise, bool measured) const {
   const Residuals here = residuals(evaluation);
+  Eigen::VectorXd slope = here.weighted;  // of chi^2 / 2 in each residual: the whitening is symmetric
+  whiten(evaluation.usable, slope.data());
   double variance = 0;
   for (Eigen::Index i = 0; i < weights_.rows(); ++i)
     for (Eigen::Index k = 0; k < weights_.cols(); ++k) {
@@ -138,7 +186,7 @@ double Misfit::chi2_noise(const Evaluation& evaluation, double noise, bool measu
       const double own = simulation_errors(evaluation.runs[static_cast<std::size_t>(i)])[static_cast<std::size_t>(k)];
       const double rough = std::hypot(noise * evaluation.simulated(i, k), !measured && std::isfinite(own) ? own : 0);
       const double error = rough * weights_(i, k);
-      const double r = here.weighted[i * weights_.cols() + k];
+      const double r = slope[i * weights_.cols() + k];
       variance += 2 * (4 * r * r * error * error + 2 * error * error * error * error);
     }
   return std::sqrt(variance);

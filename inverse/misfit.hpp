@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
+#include <utility>
 #include <vector>
 
 #include "inverse/job.hpp"
@@ -29,15 +31,19 @@ Eigen::RowVectorXd observations(const RunRecord& run);
 
 /// What is left between measurement and simulation once the edge force is chosen best.
 struct Residuals {
-  Eigen::VectorXd weighted;  ///< cut by cut, observable by observable; 0 where nothing is compared
+  Eigen::VectorXd weighted;  ///< cut by cut, observable by observable, 0 where nothing is compared; then the priors.
+                             ///< Uncorrelated: their squares add up to chi2
+  Eigen::VectorXd standardised;  ///< over their own standard deviations, correlated within a specimen; without priors
   double chi2 = 0;
   double edge_force = 0;  ///< N/mm
-  int compared = 0;       ///< number of residuals
+  int compared = 0;       ///< number of residuals, priors included
 };
 
 /// Weighted least squares between the measured cuts and simulated ones,
-///     r_ik = [y_ik(theta) + c_k(theta) F_b - m_ik] / s_ik,   c = (0 or mu, 1, 0) for (F_c, F_t, chip ratio),
-///     s^2 = measured^2 + simulated^2 + (discrepancy m)^2  (standard errors),
+///     r_ik = [y_ik(theta) + c_k(theta) F_b - m_ik] / s_ik,   c = (0 or mu, 1, 0, 0) for (F_c, F_t, chip ratio,
+///     curvature), s^2 = measured^2 + simulated^2 + (discrepancy m)^2  (standard errors),
+/// whitened for the error that all measurements of one specimen share (its forces in common, its chip ratios, its
+/// curvatures), with one residual (theta_j - prior_j) / error_j for every prior,
 /// where F_b within its bounds minimises chi^2 = sum r^2 at every theta (variable projection: it costs no runs).
 class Misfit {
  public:
@@ -62,7 +68,43 @@ class Misfit {
   /// unless that was `measured` by its own standard error: a scatter within a window that two runs may well share.
   double chi2_noise(const Evaluation& evaluation, double noise, bool measured) const;
 
-  /// 1/s, and 0 where nothing was measured.
+  /// The residuals with F_b given instead of chosen.
+  Eigen::VectorXd residuals_with(double edge_force, const Observations& simulated, const Eigen::VectorXd& point,
+                                 const CutMask& mask) const;
+  /// Length of all residual vectors: cuts x observables, then priors.
+  Eigen::Index residual_count() const;
+
+  /// Turns residuals over their independent errors into uncorrelated ones: with C = D + u u^T and v = D^-1/2 u the
+  /// symmetric root of C^-1 is [1 - (1 - 1/sqrt(1 + v^2)) v v^T / v^2] D^-1/2. T is double or an automatic derivative.
+  template <class T>
+  void whiten(const CutMask& mask, T* residuals) const {
+    for (const Common& common : commons_) {
+      T along(0.0);
+      double v2 = 0;
+      const auto each = [&](auto&& use) {
+        for (const auto& [row, column] : common.values)
+          if (mask[static_cast<std::size_t>(row)])
+            use(row * weights_.cols() + column, common_errors_(row, column) * weights_(row, column));
+      };
+      each([&](Eigen::Index i, double v) {
+        along += v * residuals[i];
+        v2 += v * v;
+      });
+      if (v2 == 0) continue;
+      along *= (1 - 1 / std::sqrt(1 + v2)) / v2;
+      each([&](Eigen::Index i, double v) { residuals[i] -= v * along; });
+    }
+  }
+
+  /// The residual of each prior from the values of the free parameters, in consistent units.
+  template <class T>
+  void add_priors(const std::vector<T>& values, T* residuals) const {
+    const std::vector<FreeParameter>& free = space_->parameters();
+    for (std::size_t j = 0; j < free.size(); ++j)
+      if (free[j].prior) *residuals++ = (values[j] - free[j].prior->value) / free[j].prior->standard_error;
+  }
+
+  /// 1/s, without what a specimen shares; 0 where nothing was measured.
   const Observations& weights() const { return weights_; }
   const Observations& measured() const { return measured_; }
   const std::optional<EdgeForce>& edge_force() const { return edge_force_; }
@@ -70,9 +112,16 @@ class Misfit {
   double edge_share(Observable observable, double friction) const;
 
  private:
+  void append_priors(const Eigen::VectorXd& point, Eigen::VectorXd& residuals) const;
+
   const ParameterSpace* space_;
   std::optional<EdgeForce> edge_force_;
-  Observations measured_, weights_, errors_;
+  Observations measured_, weights_, errors_, common_errors_;
+  /// What shares one error: places (cut, observable).
+  struct Common {
+    std::vector<std::pair<Eigen::Index, Eigen::Index>> values;
+  };
+  std::vector<Common> commons_;
 };
 
 }  // namespace kerf::inverse

@@ -24,7 +24,7 @@ std::optional<double> positive(double value) {
 chip::Measurements measurements(const Job& job) {
   std::vector<chip::MeasuredCut> cuts;
   for (const MeasuredCut& cut : job.cuts) {
-    const auto& [F_c, F_t, chip_ratio] = cut.measured;
+    const std::optional<Estimate>&F_c = cut.measured[0], &F_t = cut.measured[1];
     if (!F_c) continue;
     chip::MeasuredCut measured;
     measured.depth = cut.depth;

@@ -57,6 +57,21 @@ std::string about(const ParameterEstimate& p, const Interval& all) {
                      between(p.bounds, p.unit));
 }
 
+/// "trades off against sigma: only G sigma^0.7 is known (to 3 %)".
+std::string words(const TradeOff& with, const std::string& name) {
+  return fmt::format("trades off against {0}: best known is {1} * {0}^{2:.2g}, to {3:.2g} %", plain(with.partner),
+                     plain(name), with.exponent, 100 * with.relative_error);
+}
+
+std::string about_the_priors(const Job& job) {
+  std::string text;
+  for (const FreeParameter& p : job.free)
+    if (p.prior)
+      text += fmt::format("Part of the data is what was known of {} beforehand: {} with a standard deviation of {}. ",
+                          plain(p.name), show(p.prior->value, p.unit), show(p.prior->standard_error, p.unit));
+  return text;
+}
+
 /// Whether the scatter about the fit is what the measured errors allow.
 std::string about_the_fit(const Identifiability& identifiability) {
   const int freedom = identifiability.degrees_of_freedom;
@@ -134,12 +149,14 @@ std::string state(const Job& job, const Calibration& calibration) {
            (calibration.partial ? "It was stopped before the differences that errors come from"
                                 : "The budget did not cover the differences that errors come from") +
            ", so no parameter is judged.";
-  const std::vector<ParameterEstimate>& parameters = fit.identifiability.parameters;
-  for (std::size_t j = 0; j < parameters.size(); ++j) {
-    std::string sentence = about(parameters[j], over_all_assumptions(calibration, j));
-    sentence[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(sentence[0])));
-    text += sentence + " ";
-  }
+  for (const std::vector<ParameterEstimate>* all : {&fit.identifiability.parameters, &fit.identifiability.derived})
+    for (const ParameterEstimate& p : *all) {
+      std::string sentence = about(p, over_all_assumptions(calibration, p.name));
+      if (p.trade_off) sentence += " It " + words(*p.trade_off, p.name) + ".";
+      sentence[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(sentence[0])));
+      text += sentence + " ";
+    }
+  text += about_the_priors(job);
   text += about_the_fit(fit.identifiability);
   text += about_the_branches(job, fit);
   text += about_the_edge(calibration);

@@ -138,13 +138,15 @@ void write_reduction(const inverse::Folder& folder) {
 
 void print_table(const inverse::Calibration& calibration, const inverse::CalibrationCost& cost) {
   fmt::print("{:<16}{:>14}{:>14}{:>28}   {}\n", "parameter", "value", "std. error", "95 % interval", "verdict");
-  for (const inverse::ParameterEstimate& p : calibration.fit.identifiability.parameters)
-    fmt::print("{:<16}{:>14}{:>14}{:>28}   {}\n", p.name, inverse::show(p.value, p.unit),
-               inverse::show(p.standard_error, p.unit),
-               inverse::show(p.interval.lower, p.unit) + " ... " + inverse::show(p.interval.upper, p.unit),
-               inverse::name(p.verdict));
+  const inverse::Identifiability& known = calibration.fit.identifiability;
+  for (const std::vector<inverse::ParameterEstimate>* all : {&known.parameters, &known.derived})
+    for (const inverse::ParameterEstimate& p : *all)
+      fmt::print("{:<16}{:>14}{:>14}{:>28}   {}\n", p.name, inverse::show(p.value, p.unit),
+                 inverse::show(p.standard_error, p.unit),
+                 inverse::show(p.interval.lower, p.unit) + " ... " + inverse::show(p.interval.upper, p.unit),
+                 inverse::name(p.verdict));
   fmt::print("\nsingular values:");
-  for (const double value : calibration.fit.identifiability.singular_values) fmt::print(" {:.3g}", value);
+  for (const double value : known.singular_values) fmt::print(" {:.3g}", value);
   fmt::print("\n\n{}\n\n{} simulated cuts ({} failed), {:.0f} s\n", calibration.statement, cost.runs, cost.failed_runs,
              cost.wall_seconds);
 }

@@ -58,7 +58,7 @@ def _json(file):
     return value
 
 
-OBSERVABLES = ("F_c", "F_t", "chip_ratio")
+OBSERVABLES = ("F_c", "F_t", "chip_ratio", "chip_curvature")
 
 
 def measured_points(result):

@@ -10,7 +10,7 @@ from .style import (ACCENT, ACCENT_LIGHT, ACCENT_PALE, BALANCE, INK, QUIET, RULE
                     light_grid, svg)
 
 OBSERVABLES = {"F_c": ("cutting force F_c", "N/m"), "F_t": ("transverse force F_t", "N/m"),
-               "chip_ratio": ("chip thickness / depth", "1")}
+               "chip_ratio": ("chip thickness / depth", "1"), "chip_curvature": ("chip curvature", "1/mm")}
 
 # Three families of methods, each with its own hand: the simulation is the one to look at.
 LOOK = {
