@@ -92,6 +92,10 @@ void Misfit::include_simulation_errors(const Evaluation& reference) {
     for (Eigen::Index k = 0; k < weights_.cols(); ++k) {
       const double error = simulated[static_cast<std::size_t>(k)];
       if (errors_(i, k) > 0 && std::isfinite(error)) weights_(i, k) = 1.0 / std::hypot(errors_(i, k), error);
+      // An error in common that followed the scatter of the measured values would pull the fit towards the low ones
+      // (Peelle's puzzle): it is a share of what is simulated.
+      const double value = reference.simulated(i, k);
+      if (common_errors_(i, k) != 0 && std::isfinite(value)) common_errors_(i, k) *= value / measured_(i, k);
     }
   }
 }
