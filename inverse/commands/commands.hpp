@@ -17,6 +17,8 @@ void add_list(CLI::App& app, int& exit_code);
 void add_sweep(CLI::App& app, int& exit_code);
 void add_study(CLI::App& app, int& exit_code);
 void add_calibrate(CLI::App& app, int& exit_code);
+void add_coverage(CLI::App& app, int& exit_code);
+void add_next_cut(CLI::App& app, int& exit_code);
 void add_resume(CLI::App& app, int& exit_code);
 void add_run(CLI::App& app, int& exit_code);
 void add_evaluate(CLI::App& app, int& exit_code);

@@ -45,6 +45,8 @@ int run(int argc, char** argv) {
   kerf::commands::add_sweep(app, exit_code);
   kerf::commands::add_study(app, exit_code);
   kerf::commands::add_calibrate(app, exit_code);
+  kerf::commands::add_coverage(app, exit_code);
+  kerf::commands::add_next_cut(app, exit_code);
   kerf::commands::add_resume(app, exit_code);
   kerf::commands::add_run(app, exit_code);
   kerf::commands::add_evaluate(app, exit_code);

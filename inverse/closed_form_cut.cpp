@@ -1,0 +1,24 @@
+#include "inverse/closed_form_cut.hpp"
+
+#include <cmath>
+
+#include "models/chip/shear_minimised.hpp"
+
+namespace kerf::inverse {
+
+forward::CutResult closed_form_cut(const forward::Scene& scene) {
+  const double yield_stress = std::sqrt(3.0) * laws::shear_yield(scene.material);
+  const double toughness = scene.cohesive.mode_I ? scene.cohesive.mode_I->toughness() : 0;
+  const double friction = scene.friction ? scene.friction->coefficient : 0;
+  const double depth = scene.cut.depth, rake = scene.tool.rake;
+  const auto forces = chip::shear_minimised(depth, rake, yield_stress, toughness, friction, 0.0).forces;
+  forward::CutResult result;
+  result.F_c.value = forces.F_c;
+  result.F_t.value = forces.F_t;
+  const double cot_phi = (forces.F_c - toughness) / (yield_stress * depth);  // Eq. (4)
+  result.chip_ratio.value = std::cos(rake) * cot_phi + std::sin(rake);
+  result.steady = result.accepted = true;
+  return result;
+}
+
+}  // namespace kerf::inverse
