@@ -89,7 +89,7 @@ class Calibrator {
   Calibration stop() {
     if (result_.fit.at.point.size() == 0)
       result_.fit =
-          conclude(objective_,
+          conclude(job_, objective_,
                    {.best = *objective_.best(), .converged = false, .reason = "stopped before the end", .model = {}});
     result_.partial = true;
     result_.trace = objective_.trace();

@@ -12,9 +12,11 @@ Estimate& estimate(RunRecord& run, Eigen::Index observable) {
     case Observable::F_t:
       return run.F_t;
     case Observable::chip_ratio:
+      return run.chip_ratio;
+    case Observable::chip_curvature:
       break;
   }
-  return run.chip_ratio;
+  return run.chip_curvature;
 }
 
 }  // namespace

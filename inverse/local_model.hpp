@@ -50,9 +50,7 @@ class LocalModel {
   }
   /// d ln F_c, d F_t or d ln(chip ratio) by a search coordinate: cuts x parameters.
   const Eigen::MatrixXd& slopes(Eigen::Index observable) const { return slopes_[static_cast<std::size_t>(observable)]; }
-  static bool is_logarithmic(Eigen::Index observable) {
-    return observable != static_cast<Eigen::Index>(Observable::F_t);
-  }
+  static bool is_logarithmic(Eigen::Index observable) { return is_positive(static_cast<std::size_t>(observable)); }
 
   /// The same slopes about another simulated point.
   void move_to(const Evaluation& other);
@@ -62,7 +60,6 @@ class LocalModel {
 
  private:
   explicit LocalModel(Evaluation base);
-  static bool is_logarithmic(Eigen::Index observable) { return is_positive(static_cast<std::size_t>(observable)); }
   /// Change of one transformed observable of `cut` between the base and a run.
   double change(Eigen::Index cut, Eigen::Index observable, double simulated) const;
 

@@ -285,6 +285,9 @@ const std::vector<Block>& scene_blocks() {
 }
 
 Scene read_scene(const Document& document) {
+  if (document.has("body"))
+    throw InputError(fmt::format(
+        "{}:1:1: this scene holds bodies instead of a cut; kerf simulate, check and explain take it", document.name()));
   const Contents contents = with_preset(document).read(scene_blocks());
   const Values& window = contents.at("window");
   const Values& resolution = contents.at("resolution");

@@ -29,7 +29,7 @@ void check_curve(const std::filesystem::path& file) {
 void check_scene(const Document& document) {
   if (forward::bodies::has_bodies(document)) {
     const forward::bodies::Scene scene = forward::bodies::read_scene(document);
-    fmt::print("{}: ok, an experiment on {} bod{}: {}\n", document.name(), scene.bodies.size(),
+    fmt::print("{}: ok, a scene of {} bod{}: {}\n", document.name(), scene.bodies.size(),
                scene.bodies.size() == 1 ? "y" : "ies", scene.title);
     return;
   }

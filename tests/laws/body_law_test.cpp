@@ -35,8 +35,12 @@ BodyPoints at_rest(const Law& law, double temperature) {
   return points;
 }
 
-double power(const BodyPoints& p, const StrainIncrement& l) {
-  return p.xx[0] * l.xx[0] + p.yy[0] * l.yy[0] + p.xy[0] * (l.xy[0] + l.yx[0]);
+/// tau : l, with l as seen before the step, or after it (l (1 + l)^-1).
+double power(const BodyPoints& p, const StrainIncrement& l, bool after) {
+  const double xx = l.xx[0], xy = l.xy[0], yx = l.yx[0], yy = l.yy[0];
+  if (!after) return p.xx[0] * xx + p.yy[0] * yy + p.xy[0] * (xy + yx);
+  const double det = volume_growth(l)[0], minor = xx * yy - xy * yx;
+  return (p.xx[0] * (xx + minor) + p.yy[0] * (yy + minor) + p.xy[0] * (xy + yx)) / det;
 }
 
 /// dU = tau:l + T dS along random paths at temperatures that wander: stress, entropy and energy come from one free
@@ -54,11 +58,11 @@ double first_law_gap(const Law& law, double temperature, double reach, int steps
                             all_lanes(step * normal(random)), all_lanes(step * normal(random))};
     const double rise = 0.01 * temperature * normal(random) / steps;
     for (int i = 0; i < steps; ++i) {
-      const double before = power(p, l), s = law.configurational_entropy(p)[0], T = p.temperature[0];
+      const double before = power(p, l, false), s = law.configurational_entropy(p)[0], T = p.temperature[0];
       law.deform(l, p);
       p.temperature += rise;
       EXPECT_TRUE(law.find_stress(p));
-      work += 0.5 * (before + power(p, l));
+      work += 0.5 * (before + power(p, l, true));
       const double after = p.temperature[0];
       heat += 0.5 * (T + after) * (c * std::log(after / T) + law.configurational_entropy(p)[0] - s);
       largest = std::max({largest, std::abs(work), std::abs(heat)});
