@@ -66,14 +66,20 @@ struct J2 {
     const Lanes volumetric = lambda * (l.xx + l.yy);
     const Lanes xx = cc * tau.xx + ss * tau.yy - 2.0 * cs * tau.xy + volumetric + 2.0 * G * l.xx;
     const Lanes yy = ss * tau.xx + cc * tau.yy + 2.0 * cs * tau.xy + volumetric + 2.0 * G * l.yy;
-    const Lanes xy = cs * (tau.xx - tau.yy) + (cc - ss) * tau.xy + G * (l.xy + l.yx);
-    const Lanes zz = tau.zz + volumetric;
-    const Lanes mean = (xx + yy + zz) * (1.0 / 3.0), sxx = xx - mean, syy = yy - mean, szz = zz - mean;
-    const Lanes square = 1.5 * (sxx * sxx + syy * syy + szz * szz + 2.0 * xy * xy);
+    tau.xy = cs * (tau.xx - tau.yy) + (cc - ss) * tau.xy + G * (l.xy + l.yx);
     tau.xx = xx;
     tau.yy = yy;
-    tau.zz = zz;
-    tau.xy = xy;
+    tau.zz += volumetric;
+    return radial_return(tau);
+  }
+
+ protected:
+  /// Eqs. (2) and (3) from the trial stress in `tau`.
+  [[gnu::always_inline]] bool radial_return(MaterialPoints& tau) const {
+    const double G = shear_modulus();
+    const Lanes mean = (tau.xx + tau.yy + tau.zz) * (1.0 / 3.0);
+    const Lanes sxx = tau.xx - mean, syy = tau.yy - mean, szz = tau.zz - mean;
+    const Lanes square = 1.5 * (sxx * sxx + syy * syy + szz * szz + 2.0 * tau.xy * tau.xy);
     if (any(!(square < std::numeric_limits<double>::infinity()))) return false;
     // No curve softens: where none of the eight has reached the first yield stress, there is nothing to return.
     if (!any(square > hardening.yield_stress * hardening.yield_stress)) return true;
@@ -85,7 +91,7 @@ struct J2 {
     tau.xx = mean + keep * sxx;
     tau.yy = mean + keep * syy;
     tau.zz = mean + keep * szz;
-    tau.xy = keep * xy;
+    tau.xy *= keep;
     tau.plastic_strain += x;
     return converged;
   }

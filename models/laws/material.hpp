@@ -4,6 +4,7 @@
 #include <variant>
 #include <vector>
 
+#include "models/laws/hencky.hpp"
 #include "models/laws/hill.hpp"
 #include "models/laws/j2.hpp"
 
@@ -11,9 +12,12 @@ namespace kerf::laws {
 
 /// The registered material laws; a new one is one file and one line here. What a law must offer is `MaterialLaw` below;
 /// the solver asks by std::visit once per call, not once per point.
-using Material = std::variant<J2<LinearHardening>,      //
-                              J2<PowerHardening>,       //
-                              J2<SaturatingHardening>,  //
+using Material = std::variant<J2<LinearHardening>,          //
+                              J2<PowerHardening>,           //
+                              J2<SaturatingHardening>,      //
+                              Hencky<LinearHardening>,      //
+                              Hencky<PowerHardening>,       //
+                              Hencky<SaturatingHardening>,  //
                               Hill>;
 
 template <class Law>

@@ -31,6 +31,10 @@ TEST(Materials, AreMadeByTheirNamesInAFile) {
       std::get<J2<SaturatingHardening>>(read(std::string("law = \"j2_saturating\"\n") + polymer +
                                              "saturation_stress = \"60 MPa\"\nsaturation_strain = 0.1\n"));
   EXPECT_EQ(voce.hardening.saturation_strain, 0.1);
+  const auto hencky = std::get<Hencky<PowerHardening>>(read(std::string("law = \"hencky_power\"\n") + polymer +
+                                                            "hardening_coefficient = 2\nhardening_exponent = 0.4\n"));
+  EXPECT_EQ(hencky.elastic_modulus, 1000.0);
+  EXPECT_EQ(hencky.hardening.exponent, 0.4);
 }
 
 const char* const fir =
