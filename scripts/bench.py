@@ -24,6 +24,9 @@ table = [
     ("j2.particle_steps_per_s", ".3g", "bare kernel, all yield, 16 k particles, one core"),
     ("j2.below_yield_per_s", ".3g", "... none yields"),
     ("elastic.particle_steps_per_s", ".3g", "... yield stress out of reach"),
+    ("hencky.particle_steps_per_s", ".3g", "bare kernel, hyperelastic, all yield"),
+    ("hencky.below_yield_per_s", ".3g", "... none yields"),
+    ("hencky.overhead", ".2f", "time over that of a J2 step, all yield, minus 1"),
     ("hill.particle_steps_per_s", ".3g", "bare kernel, Hill, all yield"),
     ("hill.below_yield_per_s", ".3g", "... none yields"),
     ("hill.overhead", ".2f", "time over that of a J2 step, all yield, minus 1"),
@@ -64,7 +67,7 @@ def quantities(benches):
     def rate(name):
         return benches[name]["items_per_second"]
 
-    j2, hill = rate(f"kernel/j2/{standard}"), rate(f"kernel/hill/{standard}")
+    j2, hencky, hill = (rate(f"kernel/{law}/{standard}") for law in ("j2", "hencky", "hill"))
     hill_below = rate(f"kernel/hill_below_yield/{standard}")
     peak, l2 = rate("fma_peak"), benches["l2_read"]["bytes_per_second"]
     flops = benches["scalar"]["flops_per_particle_step"]
@@ -79,6 +82,9 @@ def quantities(benches):
         "j2.fraction_of_peak": flops * j2 / peak,
         "j2.fraction_of_l2": bytes_per_particle_step * j2 / l2,
         "elastic.particle_steps_per_s": rate(f"kernel/elastic/{standard}"),
+        "hencky.particle_steps_per_s": hencky,
+        "hencky.below_yield_per_s": rate(f"kernel/hencky_below_yield/{standard}"),
+        "hencky.overhead": j2 / hencky - 1,
         "hill.particle_steps_per_s": hill,
         "hill.below_yield_per_s": hill_below,
         "hill.overhead": j2 / hill - 1,

@@ -90,6 +90,10 @@ laws::Material elastic() {
   return law;
 }
 
+laws::Material hencky() {
+  return laws::Hencky<laws::LinearHardening>{std::get<laws::J2<laws::LinearHardening>>(verification_cut().material)};
+}
+
 laws::Material wood() {
   static const forward::Scene scene = kerf::testing::shipped("wood_rl");
   return scene.material;

@@ -32,6 +32,7 @@ double yielding_share(const forward::State& before, const forward::State& after)
 
 laws::Material polymer();  ///< J2 of the verification cut, yields at 25 MPa
 laws::Material elastic();  ///< the same, yield stress out of reach
+laws::Material hencky();   ///< the first one, hyperelastic
 laws::Material wood();     ///< Hill, Douglas-fir RL
 
 }  // namespace kerf::bench

@@ -74,8 +74,10 @@ void cut(benchmark::State& bench, const char* scene_name, double travel) {
 // What is compared stands side by side: one after the other in time.
 BENCHMARK(scalar)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(kernel, j2, polymer(), Flow::plastic)->Arg(standard)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(kernel, hencky, hencky(), Flow::plastic)->Arg(standard)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(kernel, hill, wood(), Flow::plastic)->Arg(standard)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(kernel, j2_below_yield, polymer(), Flow::elastic)->Arg(standard)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(kernel, hencky_below_yield, hencky(), Flow::elastic)->Arg(standard)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(kernel, elastic, elastic(), Flow::elastic)->Arg(standard)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(cut, verification_45, "verification_45", 2.0)->Iterations(1)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(kernel, hill_below_yield, wood(), Flow::elastic)->Arg(standard)->Unit(benchmark::kMillisecond);
