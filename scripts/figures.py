@@ -14,7 +14,8 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "scripts"))
 import numpy as np  # noqa: E402
 from matplotlib.patches import Polygon  # noqa: E402
-from report.cut import read_cut, tool_outlines  # noqa: E402
+from PIL import Image  # noqa: E402
+from report.cut import fill_between_particles, read_cut, tool_outlines  # noqa: E402
 from report.study import draw_work_precision, legend_of, read_study  # noqa: E402
 from report.style import ACCENT, INK, QUIET, SAND, STRAIN, WARM, figure, light_grid  # noqa: E402
 
@@ -242,6 +243,38 @@ def chips(results):
     return fig
 
 
+def laws(results):
+    """Plastic strain and equivalent stress of one cut under both elastic laws."""
+    titles = {"j2": "hypoelastic, Jaumann rate (j2)", "hencky": "hyperelastic, logarithmic strain (hencky)"}
+    maps = [("plastic_strain", "equivalent plastic strain", 0.6), ("equivalent_stress", "equivalent stress, MPa", 25)]
+    fig, axes = figure(900, 690, 2, 2, sharex=True, sharey=True)
+    for column, row in enumerate(table(results, "laws")):
+        cut = read_cut(results / "laws" / "cuts" / f"{column + 1:03}.h5")
+        tool, position, side = cut.tool, cut.particles["position"], cut.particles["side"]
+        left, right, bottom, top = -1.05, 1.15, -0.45, 1.45
+        shown = (np.abs(position[:, 0] - tool["tip_x"]) < 2) & (position[:, 1] < top + 0.2)
+        for ax, (field, label, most) in zip(axes[:, column], maps):
+            colours = dict(cmap=STRAIN, vmin=0, vmax=most, rasterized=True)
+            for one in (1, -1):
+                chosen = shown & (side == one)
+                fill_between_particles(ax, position[chosen] - [tool["tip_x"], 0], cut.particles[field][chosen],
+                                       3.2 * tool["particle_spacing"], colours)
+            for outline in tool_outlines(tool | {"tip_x": 0.0}, left, right, top, bottom):
+                ax.add_patch(Polygon(outline, closed=True, facecolor="#f4f1ea", edgecolor=INK, linewidth=1))
+            ax.set(xlim=(left, right), ylim=(bottom, top), aspect="equal", xticks=(-1, -0.5, 0, 0.5, 1),
+                   yticks=(0, 0.5, 1))
+            if column == 1:
+                bar = fig.colorbar(ax.collections[0], ax=axes[maps.index((field, label, most))], shrink=0.85, aspect=24,
+                                   pad=0.015, extend="max" if field == "plastic_strain" else "neither")
+                bar.outline.set_visible(False)
+                bar.set_label(label)
+        axes[0, column].set_title(f"{titles[row['material.law']]}\nF_c = {row['F_c']:.0f} ± {row['F_c_se']:.0f} N/m")
+        axes[1, column].set_xlabel("x from the edge, mm")
+    for ax in axes[:, 0]:
+        ax.set_ylabel("y, mm")
+    return fig
+
+
 def work_precision(results):
     """Error against cost, one knob at a time, of the studies that were run."""
     titles = {"study_polymer": "polymer, verification_45", "study_wood": "wood, wood_rl"}
@@ -259,7 +292,7 @@ def work_precision(results):
 # A figure and a folder without which it cannot be drawn.
 FIGURES = {"plane_chips": (chips, "plane_mouth"), "talk_forces": (talk, "talk"), "talk_effects": (effects, "talk_rake"),
            "bottom_force": (bottom, "talk_edge"), "wood_forces": (wood, "wood_rl"), "plane_forces": (plane, "plane_m12"),
-           "work_precision": (work_precision, "study_polymer")}
+           "laws": (laws, "laws"), "work_precision": (work_precision, "study_polymer")}
 
 
 def main():
@@ -271,6 +304,8 @@ def main():
         fig = draw(results)
         file = output / f"{name}.png"
         fig.savefig(file, dpi=110, facecolor="white")
+        with Image.open(file) as picture:  # a palette takes a third of the room
+            picture.convert("RGB").quantize(128).save(file, optimize=True)
         print(file)
 
 

@@ -24,6 +24,7 @@ depths=cut.depth=0.1,0.2,0.3,0.4,0.5mm
 
 sweep talk verification_45 tool.rake=15,30,45deg cut.depth=0.25,0.5,1,2mm cut.travel=16
 sweep talk_hardening verification_hardening_45 tool.rake=15,30,45deg cut.depth=0.25,0.5,1,2mm cut.travel=16
+sweep laws verification_45 material.law=j2,hencky
 sweep talk_strength verification_45 $strength=15,20,30,40,60,80MPa
 sweep talk_toughness verification_45 $toughness=0.5,1,2,3,4kJ/m^2
 sweep talk_rake verification_45 tool.rake=10,20,30,40,50,60deg cut.travel=14

@@ -107,7 +107,7 @@ def chip_picture(cut):
     spacing = tool["particle_spacing"]
     for side in (1, -1):
         chosen = inside & (cut.particles["side"] == side)
-        _fill_between_particles(axes, position[chosen], strain[chosen], 3.2 * spacing, colours)
+        fill_between_particles(axes, position[chosen], strain[chosen], 3.2 * spacing, colours)
     dots = axes.scatter(x[inside], y[inside], c=strain[inside], s=(1.15 * spacing * points_per_mm) ** 2, marker="s",
                         linewidths=0, **colours)
     for points in cut.faces.values():
@@ -129,7 +129,7 @@ def chip_picture(cut):
     return svg(fig, "the chip at the end of the cut, coloured by plastic strain")
 
 
-def _fill_between_particles(axes, position, strain, reach, colours):
+def fill_between_particles(axes, position, strain, reach, colours):
     """Where the chip has stretched, rows of particles stand apart though the material does not: join neighbours."""
     if len(position) < 3:
         return
