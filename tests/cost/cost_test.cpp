@@ -102,6 +102,7 @@ TEST(Cost, AnAbsentEffectHoldsNoByte) {
   EXPECT_GT(loaded.top, 0u);
   EXPECT_GT(loaded.slip, 0u);
 
+  EXPECT_EQ(bytes_of(shipped("hyperelastic_45")).per_particle, plain.per_particle);
   const Bytes hill = bytes_of(shipped("wood_rl"));
   EXPECT_EQ(hill.per_particle, plain.per_particle + 2 * sizeof(double));
   EXPECT_GT(hill.axes, 0u);

@@ -122,7 +122,7 @@ TEST_F(CutCommands, ExplainShowsWhereTheTimeOfARunWent) {
 }
 
 TEST_F(CutCommands, TheShippedScenesAreReadable) {
-  for (const char* name : {"verification_45", "verification_30", "verification_15"}) {
+  for (const char* name : {"verification_45", "verification_30", "verification_15", "hyperelastic_45"}) {
     const ProcessOutput run =
         kerf("explain '" + (fs::path(KERF_SOURCE_DIR) / "data/scenes" / name).string() + ".toml'");
     EXPECT_EQ(run.exit_code, 0) << run.err;
