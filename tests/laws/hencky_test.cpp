@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <limits>
+#include <numbers>
 #include <random>
 
 #include "tests/laws/material_point.hpp"
@@ -90,8 +92,7 @@ TEST(Hencky, ASuperposedRotationTurnsTheStressAndChangesNothingElse) {
     ASSERT_TRUE(drive(still, polymer, gradient_of(f)));
     ASSERT_TRUE(drive(turned, polymer, gradient_of(after * f * before.transpose())));
     before = after;
-    const double size = std::max({1.0, std::abs(still.xx), std::abs(still.yy)});
-    ASSERT_LT((after * in_plane(still) * after.transpose() - in_plane(turned)).norm(), 1e-12 * 1000 * size) << step;
+    ASSERT_LT((after * in_plane(still) * after.transpose() - in_plane(turned)).norm(), 1e-12 * 1000) << step;
     ASSERT_NEAR(still.zz, turned.zz, 1e-9);
     ASSERT_NEAR(still.plastic_strain, turned.plastic_strain, 1e-12);
   }
@@ -163,10 +164,11 @@ TEST(Hencky, AClosedElasticPathEndsWhereItBegan) {
 
 /// The work of a closed elastic path vanishes with the square of the step.
 TEST(Hencky, AnElasticCycleReturnsItsWork) {
+  constexpr double turn = 2.0 * std::numbers::pi;
   const auto work = [](int steps) {
     Point point;
     for (int i = 0; i < steps; ++i) {
-      const double at = 2.0 * M_PI * (i + 0.5) / steps, length = 2.0 * M_PI / steps;
+      const double at = turn * (i + 0.5) / steps, length = turn / steps;
       const auto F = [](double t) { return Matrix2d{{1.0 + 0.4 * std::sin(t), 0.8 * (1.0 - std::cos(t))}, {0, 1}}; };
       drive(point, elastic, gradient_of(F(at + length / 2) * F(at - length / 2).inverse()));
     }
