@@ -4,6 +4,7 @@
 #include <variant>
 #include <vector>
 
+#include "models/laws/hencky.hpp"
 #include "models/laws/hill.hpp"
 #include "models/laws/ideal_gas.hpp"
 #include "models/laws/ideal_rubber.hpp"
@@ -15,12 +16,15 @@ namespace kerf::laws {
 
 /// The laws that a body may follow: those of heat and stress, and those that a cut knows. A new one is one file and one
 /// line here.
-using BodyLaw = std::variant<IdealGas,                             //
-                             IdealRubber,                          //
-                             MieGruneisen,                         //
-                             Mechanical<J2<LinearHardening>>,      //
-                             Mechanical<J2<PowerHardening>>,       //
-                             Mechanical<J2<SaturatingHardening>>,  //
+using BodyLaw = std::variant<IdealGas,                                 //
+                             IdealRubber,                              //
+                             MieGruneisen,                             //
+                             Mechanical<J2<LinearHardening>>,          //
+                             Mechanical<J2<PowerHardening>>,           //
+                             Mechanical<J2<SaturatingHardening>>,      //
+                             Mechanical<Hencky<LinearHardening>>,      //
+                             Mechanical<Hencky<PowerHardening>>,       //
+                             Mechanical<Hencky<SaturatingHardening>>,  //
                              Mechanical<Hill>>;
 
 template <class Law>

@@ -142,6 +142,17 @@ TEST(BodyLaw, AThinStripPulledIsTheClosedForm) {
               1e-4);
 }
 
+TEST(BodyLaw, AHyperelasticBodyShearsAsItsLawSays) {
+  const Mechanical<Hencky<LinearHardening>> body{{{1000, 0.33, 1e-9, {.yield_stress = 1e12, .modulus = 0}}}};
+  const StrainIncrement simple_shear{Lanes{}, all_lanes(0.5), Lanes{}, Lanes{}};
+  BodyPoints p = at_rest(body, 300);
+  for (int i = 0; i < 10; ++i) body.deform(simple_shear, p);
+  ASSERT_TRUE(body.find_stress(p));
+  const double strain = std::asinh(2.5), G = body.law.shear_modulus();
+  EXPECT_NEAR(p.xy[3], 2.0 * G * strain / std::sqrt(7.25), 1e-9);
+  EXPECT_NEAR(body.energy(p)[3], 2.0 * G * strain * strain, 1e-9);
+}
+
 TEST(BodyLaw, WithoutVolumeOrTemperatureThereIsNoStress) {
   BodyPoints p = at_rest(air, 600);
   air.deform({all_lanes(-1.1), Lanes{}, Lanes{}, Lanes{}}, p);
