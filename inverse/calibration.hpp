@@ -5,8 +5,8 @@
 
 #include "inverse/identifiability.hpp"
 #include "inverse/job.hpp"
-#include "inverse/noise_audit.hpp"
 #include "inverse/left_out.hpp"
+#include "inverse/noise_audit.hpp"
 #include "inverse/optimiser.hpp"
 #include "inverse/run_database.hpp"
 #include "models/base/error.hpp"
@@ -20,7 +20,7 @@ struct Fit {
   Evaluation at;
   Residuals residuals;
   Identifiability identifiability;
-  CutMask at_jump;          ///< cuts within a difference step of another branch; empty without slopes
+  CutMask at_jump;  ///< cuts within a difference step of another branch; empty without slopes
   Resampling resampling;
   bool has_slopes = false;  ///< false: the budget did not allow the differences that errors need
   bool converged = false;

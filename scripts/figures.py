@@ -275,6 +275,52 @@ def laws(results):
     return fig
 
 
+def experiment(results, name):
+    """Results and history of a scene of bodies, columns as arrays."""
+    kept = json.loads((results / f"{name}.json").read_text())
+    return kept["results"], {key: np.array(values) for key, values in kept["history"].items()}
+
+
+def bodies(results):
+    """Engine, metal, rubber band and glued bar."""
+    fig, axes = figure(900, 700, 2, 2)
+    _, gas = experiment(results, "carnot_gas")
+    colours = [WARM, INK, ACCENT, QUIET]
+    for panel, x, y in ((axes[0, 0], gas["length"] / gas["length"][0], -gas["stress_xx"] * gas["length"][0] / gas["length"]),
+                        (axes[0, 1], gas["entropy"] * 1e3, gas["temperature"])):
+        for stroke in range(1, 5):
+            part = np.flatnonzero(gas["stroke"] == stroke)
+            part = part if part[0] == 0 else np.r_[part[0] - 1, part]
+            panel.plot(x[part], y[part], color=colours[stroke - 1], linewidth=2,
+                       label=f"{'isothermal' if stroke % 2 else 'adiabatic'} {'out' if stroke < 3 else 'back'}")
+    axes[0, 0].set(title="ideal gas, Carnot cycle", xlabel="volume / first volume", ylabel="pressure, MPa")
+    axes[0, 0].legend(frameon=False)
+    axes[0, 1].set(title="the same cycle", xlabel="entropy, µJ/(mm K)", ylabel="temperature, K")
+
+    _, rubber = experiment(results, "rubber_gough")
+    stretch = rubber["length"] / rubber["length"][0]
+    fast, slow = rubber["stroke"] == 3, rubber["stroke"] == 1
+    axes[1, 0].plot(stretch[fast], rubber["temperature"][fast] - 293, color=WARM, linewidth=2, label="pulled fast")
+    axes[1, 0].plot(stretch[slow], rubber["temperature"][slow] - 293, color=ACCENT, linewidth=2, label="pulled in a bath")
+    ls = np.linspace(1, 3, 100)
+    w = 0.2 * (ls**2 + 2 / ls - 3) + 0.02 * (2 * ls + 1 / ls**2 - 3)
+    axes[1, 0].plot(ls, 293 * np.expm1(w / (930e-12 * 1.9e9 * 293)), color=INK, linestyle=":", label="closed form")
+    axes[1, 0].set(title="ideal rubber", xlabel="stretch", ylabel="temperature rise, K")
+    axes[1, 0].legend(frameon=False)
+
+    glue = [experiment(results, file.stem)[0] for file in results.glob("interface_bar_*.json")]
+    glue.sort(key=lambda bar: bar["interface_stiffness"])
+    D = np.array([bar["interface_stiffness"] for bar in glue])
+    axes[1, 1].semilogx(D, [bar["effective_modulus"] for bar in glue], "o", color=WARM, label="simulated")
+    ds = np.logspace(np.log10(D[0]), np.log10(D[-1]), 200)
+    axes[1, 1].semilogx(ds, 1 / (1e-3 + 1 / (100 * ds)), color=INK, linestyle=":", label="bars and glue in series")
+    axes[1, 1].set(title="bar with an imperfect interface", xlabel="stiffness D, MPa/mm", ylabel="effective modulus, MPa")
+    axes[1, 1].legend(frameon=False)
+    for panel in axes.flat:
+        light_grid(panel)
+    return fig
+
+
 def work_precision(results):
     """Error against cost, one knob at a time, of the studies that were run."""
     titles = {"study_polymer": "polymer, verification_45", "study_wood": "wood, wood_rl"}
@@ -289,10 +335,11 @@ def work_precision(results):
     return fig
 
 
-# A figure and a folder without which it cannot be drawn.
+# A figure and the result without which it cannot be drawn.
 FIGURES = {"plane_chips": (chips, "plane_mouth"), "talk_forces": (talk, "talk"), "talk_effects": (effects, "talk_rake"),
            "bottom_force": (bottom, "talk_edge"), "wood_forces": (wood, "wood_rl"), "plane_forces": (plane, "plane_m12"),
-           "laws": (laws, "laws"), "work_precision": (work_precision, "study_polymer")}
+           "laws": (laws, "laws"), "work_precision": (work_precision, "study_polymer"),
+           "bodies": (bodies, "carnot_gas.json")}
 
 
 def main():

@@ -46,4 +46,13 @@ study study_wood wood_rl resolution.cells_through_chip=x0.75,x1.25 cut.speed=x2,
   pic_damping.rate=x0,x4 window.ahead+window.behind+window.below+window.above=x0.75 resolution.cell_stretch=3 \
   steady_state.not_before=x0.5 preset=draft --reference resolution.cells_through_chip=x1.5
 
+# The same particles as an engine, a rubber band and a glued bar.
+for name in carnot_gas carnot_tungsten rubber_gough; do
+  build/release/kerf simulate "$scenes/$name.toml" -o "results/experiments/$name.json"
+done
+for stiffness in 1 3 10 30 100 1e3 1e5 1e7 1e9; do
+  build/release/kerf simulate "$scenes/interface_bar.toml" --set "interface.normal=$stiffness MPa/mm" \
+    -o "results/experiments/interface_bar_$stiffness.json"
+done
+
 scripts/figures.py results/experiments data/figures

@@ -142,7 +142,7 @@ BodiesResult run(const Scene& scene, const std::function<bool(std::size_t, doubl
         result.stroke_ends.push_back(result.history.size() - 1);
         break;
       }
-      if (!(state.piston.position > 1e-3 * scene.length && state.piston.position < 1e3 * scene.length))
+      if (!(state.piston.position > 1e-2 * scene.length && state.piston.position < 1e2 * scene.length))
         state.breakdown = fmt::format("stroke {} passed {:.3g} times the box's length without meeting its end", s + 1,
                                       state.piston.position / scene.length);
       if (progress && !progress(s, state.piston.position / scene.length)) {
