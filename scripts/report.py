@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Writes the report page of a calibration, a sweep or a study (a directory) or of one simulated cut (an .h5 file).
+"""Writes the report page of a calibration, a sweep or a study (a directory), of one simulated cut
+(an .h5 file) or of an experiment on bodies (a .json file).
 
 Of a sweep also its figures, sweep.svg and sweep_intercepts.svg, beside the page; of a study study.svg.
 
@@ -55,6 +56,8 @@ def main():
     arguments.add_argument("--output", type=Path)
     options = arguments.parse_args()
     require_modules()
+    from report.bodies import read_bodies
+    from report.bodies_page import page_of_bodies
     from report.calibration import read_calibration
     from report.calibration_page import page_of_calibration
     from report.cut import Unreadable, read_cut
@@ -80,6 +83,9 @@ def main():
         elif options.target.is_dir():
             page = page_of_calibration(read_calibration(options.target))
             output = options.output or options.target / "report.html"
+        elif options.target.suffix == ".json":
+            page = page_of_bodies(read_bodies(options.target))
+            output = options.output or options.target.with_suffix(".html")
         else:
             page = page_of_cut(read_cut(options.target))
             output = options.output or options.target.with_suffix(".html")

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "data/curve.hpp"
+#include "forward/bodies/scene.hpp"
 #include "forward/scene/preset.hpp"
 #include "forward/scene/scene.hpp"
 #include "inverse/commands/commands.hpp"
@@ -25,6 +26,7 @@ struct Source {
 /// Everything that an input file may hold, from the declarations that read it.
 std::vector<Source> sources() {
   return {{"scene", "a cut to simulate (TOML)", forward::scene_blocks()},
+          {"bodies", "an experiment on bodies in a box (TOML)", forward::bodies::scene_blocks()},
           {"job", "a calibration (TOML)", inverse::job_blocks()},
           {"curve", "a measured curve (CSV); header cells carry the unit, as in depth[um]", {data::curve_columns()}}};
 }
@@ -136,7 +138,7 @@ void list(const std::string& family) {
 void add_list(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("list", "Print the blocks and parameters that input files may hold");
   auto* family =
-      command->add_option("family", "a file (scene, job, curve), a block, a law, or preset; all if left out");
+      command->add_option("family", "a file (scene, bodies, job, curve), a block, a law, or preset; all if left out");
   command->callback([family, &exit_code] {
     list(family->empty() ? "" : family->as<std::string>());
     exit_code = static_cast<int>(ExitCode::success);

@@ -20,11 +20,12 @@ struct Options {
 }  // namespace
 
 void add_report(CLI::App& app, int& exit_code) {
-  auto* command =
-      app.add_subcommand("report", "Write one self-contained HTML page about a calibration, a sweep, a study or a cut");
+  auto* command = app.add_subcommand(
+      "report", "Write one self-contained HTML page about a calibration, a sweep, a study, a cut or bodies");
   const auto options = std::make_shared<Options>();
   command
-      ->add_option("target", options->target, "directory of a calibration, sweep or study, or the .h5 file of one cut")
+      ->add_option("target", options->target,
+                   "directory of a calibration, sweep or study, the .h5 file of one cut, or the .json of bodies")
       ->required();
   command->add_option("-o,--output", options->output, "the page (default: DIR/report.html, or OUT.html beside OUT.h5)");
   command->callback([options, &exit_code] {

@@ -149,7 +149,10 @@ ExitCode simulate_bodies(const Options& options, Document document) {
     return !StopOnInterrupt::asked();
   });
   if (terminal) fmt::print(stderr, "\r\033[K");
-  const nlohmann::ordered_json json = forward::bodies::result_json(result);
+  nlohmann::ordered_json json = forward::bodies::result_json(result);
+  json["title"] = scene.title;
+  json["scene"] = document.canonical();
+  json["code_version"] = KERF_VERSION;
   if (!options.output.empty()) write_atomically(options.output, json.dump(2) + "\n");
   if (options.json) {
     fmt::print("{}\n", json.dump(2));
@@ -197,7 +200,8 @@ void add_simulate(CLI::App& app, int& exit_code) {
   auto* command = app.add_subcommand("simulate", "Simulate one cut and judge it");
   const auto options = std::make_shared<Options>();
   command->add_option("scene", options->scene, "scene file (TOML)")->required();
-  command->add_option("-o,--output", options->output, "keep the cut in this HDF5 file, with .xdmf for ParaView beside");
+  command->add_option("-o,--output", options->output,
+                      "keep the cut in this HDF5 file, with .xdmf for ParaView beside; of bodies, a .json");
   command->add_option("--preset", options->preset,
                       "draft, standard or reference: over what the scene says (see `kerf list preset`)");
   command->add_option("--set", options->settings, "PATH=VALUE, as in tool.rake=30deg: another value than the scene's")

@@ -99,6 +99,13 @@ TEST(BodiesScene, SimulateKeepsAndPrintsWhatTheSceneIsFor) {
   const auto printed = nlohmann::json::parse(run.out), kept = nlohmann::json::parse(content_of(folder / "bar.json"));
   EXPECT_EQ(printed, kept);
   EXPECT_LT(printed.at("results").at("effective_modulus_error").get<double>(), 5e-3);
+  const std::string file = "report '" + (folder / "bar.json").string() + "'";
+  EXPECT_EQ(run_kerf(file, folder).exit_code, 0);
+  EXPECT_THAT(content_of(folder / "bar.html"), HasSubstr("effective modulus error"));
+  std::ofstream(folder / "bar.json") << "{\"a\": 1}";
+  const ProcessOutput broken = run_kerf(file, folder);
+  EXPECT_EQ(broken.exit_code, 3);
+  EXPECT_THAT(broken.err, HasSubstr("bar.json: not what `kerf simulate -o` keeps of bodies"));
   EXPECT_EQ(run_kerf("check '" KERF_SOURCE_DIR "/data/scenes/carnot_gas.toml'", folder).exit_code, 0);
   EXPECT_THAT(run_kerf("explain '" KERF_SOURCE_DIR "/data/scenes/carnot_gas.toml'", folder).out,
               HasSubstr("Not simulated"));
