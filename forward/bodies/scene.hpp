@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "forward/scene/scene.hpp"
 #include "models/base/document.hpp"
 #include "models/laws/body_law.hpp"
 
@@ -44,11 +45,6 @@ struct Stroke {
 /// Two bodies that meet along a straight line, joined by springs: t_n = D_n [u_n], t_t = D_t [u_t].
 struct Interface {
   double normal, compressive, tangential;  ///< MPa/mm; compressive: D_n where the faces overlap
-};
-
-/// FLIP blended towards PIC, as in a cut.
-struct PicDamping {
-  double rate;
 };
 
 /// Heat flows within and between bodies, and through walls that have a temperature.

@@ -43,6 +43,11 @@ nlohmann::ordered_json number(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
 }
 
+/// A fit that does not describe the curve measures nothing.
+std::string verdict(const chip::Fit& fit, const chip::FittedParameter& parameter) {
+  return fit.rejected() ? "fit rejected" : chip::in_words(parameter.verdict);
+}
+
 nlohmann::ordered_json to_json(const chip::Fit& fit) {
   nlohmann::ordered_json json{{"chi2", number(fit.chi2)},
                               {"degrees_of_freedom", fit.freedom},
@@ -54,7 +59,7 @@ nlohmann::ordered_json to_json(const chip::Fit& fit) {
                                   {"se", number(p.standard_error / one)},
                                   {"interval", {number(p.lower / one), number(p.upper / one)}},
                                   {"unit", p.unit},
-                                  {"verdict", chip::in_words(p.verdict)}};
+                                  {"verdict", verdict(fit, p)}};
   }
   return json;
 }
@@ -63,10 +68,10 @@ void print(const chip::Fit& fit) {
   for (const chip::FittedParameter& p : fit.parameters) {
     const double one = consistent_units_in(p.unit);
     fmt::print("{:<21}{:>9.4g} +- {:<8.3g}{:>9.4g} ... {:<9.4g}{:<7} {}\n", p.name, p.value / one,
-               p.standard_error / one, p.lower / one, p.upper / one, p.unit, chip::in_words(p.verdict));
+               p.standard_error / one, p.lower / one, p.upper / one, p.unit, verdict(fit, p));
   }
   fmt::print("chi2 = {:.3g} with {} degrees of freedom{}\n", fit.chi2, fit.freedom,
-             fit.rejected() ? ": the beams do not describe this curve, and none of the above is measured" : "");
+             fit.rejected() ? ": the beams do not describe this curve" : "");
 }
 
 }  // namespace

@@ -9,23 +9,17 @@
 
 #include "forward/bodies/step.hpp"
 #include "models/base/error.hpp"
+#include "tests/shipped_scene.hpp"
 #include "tests/unit/run_kerf.hpp"
 
 namespace kerf::forward::bodies {
 namespace {
 
+using kerf::testing::replaced;
+using kerf::testing::shipped_text;
+
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-
-std::string shipped_text(const std::string& name) {
-  return content_of(std::string(KERF_SOURCE_DIR "/data/scenes/") + name + ".toml");
-}
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return at == std::string::npos ? text : text.replace(at, from.size(), to);
-}
 
 std::string complaint(const std::string& text) {
   try {

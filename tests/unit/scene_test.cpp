@@ -12,24 +12,15 @@
 #include <vector>
 
 #include "models/base/error.hpp"
+#include "tests/shipped_scene.hpp"
 
 namespace kerf::forward {
 namespace {
 
+using kerf::testing::replaced;
+using kerf::testing::shipped_text;
+
 using ::testing::HasSubstr;
-
-/// A shipped scene as its author would see it in an editor.
-std::string text_of(const std::string& name) {
-  std::ostringstream text;
-  text << std::ifstream(std::string(KERF_SOURCE_DIR "/data/scenes/") + name + ".toml").rdbuf();
-  return text.str();
-}
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return at == std::string::npos ? text : text.replace(at, from.size(), to);
-}
 
 std::string complaint(const std::string& text) {
   try {
@@ -64,7 +55,7 @@ class SceneMistake : public ::testing::TestWithParam<Mistake> {};
 
 TEST_P(SceneMistake, IsRefusedWithItsPlace) {
   const Mistake& mistake = GetParam();
-  const std::string text = replaced(text_of(mistake.scene), mistake.what, mistake.with);
+  const std::string text = replaced(shipped_text(mistake.scene), mistake.what, mistake.with);
   const std::string message = complaint(text);
   const std::string place =
       *mistake.at ? "cut.toml:" + std::to_string(line_of(text, mistake.at)) + ":" : std::string("cut.toml");
@@ -169,18 +160,18 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(Scene, ABevelLeavesTheClearanceThatRakeAndBevelDoNotTake) {
   const Scene scene = read_scene(Document::parse(
-      replaced(text_of("verification_45"), rake, "rake = \"45 deg\"\nbevel = \"30 deg\"\n"), "cut.toml"));
+      replaced(shipped_text("verification_45"), rake, "rake = \"45 deg\"\nbevel = \"30 deg\"\n"), "cut.toml"));
   EXPECT_NEAR(scene.tool.clearance * 180 / std::acos(-1), 15, 1e-12);
 }
 
 TEST(Scene, AMouthInDepthsFollowsTheDepth) {
-  Document document = Document::parse(text_of("plane_breaker"), "cut.toml");
+  Document document = Document::parse(shipped_text("plane_breaker"), "cut.toml");
   document.set_number("cut.depth", 0.2, scene_blocks());
   EXPECT_NEAR(read_scene(document).sole->opening, 0.8, 1e-12);
 }
 
 TEST(Scene, PartsRubAsTheRakeFaceUnlessTheyHaveTheirOwnCoefficient) {
-  const std::string text = text_of("plane_breaker") + "\n[friction]\ncoefficient = 0.3\nsole = 0.1\n";
+  const std::string text = shipped_text("plane_breaker") + "\n[friction]\ncoefficient = 0.3\nsole = 0.1\n";
   const Scene scene = read_scene(Document::parse(text, "cut.toml"));
   EXPECT_EQ(scene.friction->sole, 0.1);
   EXPECT_EQ(scene.friction->chip_breaker, 0.3);
@@ -188,7 +179,7 @@ TEST(Scene, PartsRubAsTheRakeFaceUnlessTheyHaveTheirOwnCoefficient) {
 
 /// A zone in mm is room whatever the depth: ahead, behind and above grow by it, the base does not.
 TEST(Scene, AZoneLengthensTheWindow) {
-  const Scene scene = read_scene(Document::parse(text_of("plane_breaker"), "cut.toml"));  // 1.5 mm = 5 depths
+  const Scene scene = read_scene(Document::parse(shipped_text("plane_breaker"), "cut.toml"));  // 1.5 mm = 5 depths
   EXPECT_NEAR(scene.window.ahead, 6 + 5, 1e-12);
   EXPECT_NEAR(scene.window.behind, 3 + 5, 1e-12);
   EXPECT_NEAR(scene.window.above, 4 + 5, 1e-12);

@@ -10,21 +10,13 @@
 #include <sstream>
 
 #include "forward/bodies/step.hpp"
+#include "tests/shipped_scene.hpp"
 
 namespace kerf::forward::bodies {
 namespace {
 
-std::string text_of(const std::string& name) {
-  std::ostringstream text;
-  text << std::ifstream(std::string(KERF_SOURCE_DIR "/data/scenes/") + name + ".toml").rdbuf();
-  return text.str();
-}
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return at == std::string::npos ? text : text.replace(at, from.size(), to);
-}
+using kerf::testing::replaced;
+using kerf::testing::shipped_text;
 
 BodiesResult result_of(const std::string& text) {
   return run(read_scene(Document::parse(text, "scene.toml")));
@@ -35,7 +27,7 @@ double number(const BodiesResult& result, const char* name) {
 }
 
 TEST(Bodies, AnIdealGasReachesCarnotsEfficiency) {
-  const BodiesResult result = result_of(text_of("carnot_gas"));
+  const BodiesResult result = result_of(shipped_text("carnot_gas"));
   ASSERT_TRUE(result.accepted);
   EXPECT_NEAR(number(result, "efficiency"), 0.5, 1e-3);
   EXPECT_LT(number(result, "pv_gamma_error"), 1e-4);
@@ -46,7 +38,7 @@ TEST(Bodies, AnIdealGasReachesCarnotsEfficiency) {
 }
 
 TEST(Bodies, TungstenCoolsOnExpansionAndGivesCarnotsEfficiency) {
-  const BodiesResult result = result_of(text_of("carnot_tungsten"));
+  const BodiesResult result = result_of(shipped_text("carnot_tungsten"));
   ASSERT_TRUE(result.accepted);
   EXPECT_LT(number(result, "first_step_temperature_change"), 0.0);
   EXPECT_NEAR(number(result, "efficiency") / (1.0 / 300), 1.0, 0.02);
@@ -54,7 +46,7 @@ TEST(Bodies, TungstenCoolsOnExpansionAndGivesCarnotsEfficiency) {
 }
 
 TEST(Bodies, AdiabaticExpansionOfTungstenCoolsAsItsGruneisenConstantSays) {
-  std::string text = text_of("carnot_tungsten");
+  std::string text = shipped_text("carnot_tungsten");
   text = text.substr(0, text.find("[[stroke]]")) +
          "[[stroke]]\nheat = \"adiabatic\"\npiston_speed = \"0.1 m/s\"\nramp = \"0.05 ms\"\nuntil_stretch = 1.001\n"
          "[pic_damping]\nrate = 0.02\n";
@@ -70,7 +62,7 @@ TEST(Bodies, AdiabaticExpansionOfTungstenCoolsAsItsGruneisenConstantSays) {
 }
 
 TEST(Bodies, IdealRubberGivesAllWorkAsHeatAndWarmsWhenPulledFast) {
-  const BodiesResult result = result_of(text_of("rubber_gough"));
+  const BodiesResult result = result_of(shipped_text("rubber_gough"));
   ASSERT_TRUE(result.accepted);
   EXPECT_NEAR(number(result, "heat_over_work"), 1.0, 2e-3);
   EXPECT_NEAR(number(result, "entropy_over_heat"), 1.0, 1e-6);
@@ -80,7 +72,7 @@ TEST(Bodies, IdealRubberGivesAllWorkAsHeatAndWarmsWhenPulledFast) {
 }
 
 TEST(Bodies, ABarIsAsStiffAsItsHalvesAndTheirGlue) {
-  const std::string text = text_of("interface_bar");
+  const std::string text = shipped_text("interface_bar");
   // From soft to a million times E/cell.
   for (const double D : {1.0, 1e1, 1e2, 1e3, 1e5, 1e9}) {
     const BodiesResult result = result_of(replaced(text, "normal = \"10 MPa", fmt::format("normal = \"{} MPa", D)));
@@ -94,7 +86,7 @@ TEST(Bodies, ABarIsAsStiffAsItsHalvesAndTheirGlue) {
 }
 
 TEST(Bodies, CompressedFacesHaveTheirOwnStiffness) {
-  std::string text = text_of("interface_bar");
+  std::string text = shipped_text("interface_bar");
   text = replaced(text, "[interface]", "[interface]\ncompressive = \"1000 MPa/mm\"");
   text = replaced(text, "1.0002", "0.9998");
   text = replaced(text, "\"0.02 m/s\"", "\"-0.02 m/s\"");
@@ -144,7 +136,7 @@ TEST(Bodies, HeatConductionFollowsTheSeriesWithSecondOrder) {
 
 TEST(Bodies, AnImpossibleStrokeEndsInARefusal) {
   const BodiesResult result =
-      result_of(replaced(text_of("carnot_gas"), "until_temperature = \"300 K\"", "until_temperature = \"700 K\""));
+      result_of(replaced(shipped_text("carnot_gas"), "until_temperature = \"300 K\"", "until_temperature = \"700 K\""));
   EXPECT_FALSE(result.accepted);
   ASSERT_FALSE(result.refusals.empty());
 }
