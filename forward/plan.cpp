@@ -1,10 +1,12 @@
 #include "forward/plan.hpp"
 
 #include <cmath>
+#include <memory>
 
 #include "forward/effects/bridging.hpp"
 #include "forward/effects/face_friction.hpp"
 #include "forward/effects/grips.hpp"
+#include "forward/effects/spindle.hpp"
 #include "forward/effects/thermostat.hpp"
 #include "forward/effects/xpic.hpp"
 #include "forward/mpm/crack.hpp"
@@ -25,6 +27,10 @@ std::vector<Stage> plan(const Scene& scene) {
     stages.push_back({std::move(name), std::move(does), std::move(apply)});
   };
   add("project", "grid velocities p/m of both sides of the crack plane", project_velocity);
+  const auto spindle = scene.log ? std::make_shared<Spindle>(scene) : nullptr;
+  if (spindle)
+    add("spindle", "the log's core turns as a rigid body, and keeps pace with the tool",
+        [spindle](State& state) { spindle->turn(state); });
   add("markers", "crack-face markers follow the projected velocity of their side", move_markers);
   // A sharp tip runs inside the opened crack, clear of the lower face by a fiftieth of the depth.
   const double lift = scene.edge_contact ? 0.0 : 0.02 * scene.cut.depth;
@@ -57,6 +63,8 @@ std::vector<Stage> plan(const Scene& scene) {
           press(state, contact, scene, options);
         });
   add("spread", "marker forces go to the nodes they were interpolated from", spread_marker_forces);
+  if (spindle)
+    add("drive", "forces of the spindle on the core, and their work", [spindle](State& state) { spindle->drive(state); });
   add("accelerate", "new grid velocities under the fixed boundary", accelerate);
   if (scene.xpic_damping) {
     add("filter", "what XPIC blends towards",

@@ -8,12 +8,13 @@ import csv
 import json
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "scripts"))
 import numpy as np  # noqa: E402
-from matplotlib.patches import Polygon  # noqa: E402
+from matplotlib.patches import Circle, Polygon  # noqa: E402
 from PIL import Image  # noqa: E402
 from report.cut import fill_between_particles, read_cut, tool_outlines  # noqa: E402
 from report.study import draw_work_precision, legend_of, read_study  # noqa: E402
@@ -275,6 +276,39 @@ def laws(results):
     return fig
 
 
+def veneer(results):
+    """The log after half a turn, and the ribbon at the knife, coloured by plastic strain."""
+    cut = read_cut(results / "veneer.h5")
+    scene = tomllib.loads(cut.scene)
+    bar_lead, bar_radius, compression = (float(scene["nose_bar"][key].split()[0])  # mm
+                                         for key in ("lead", "radius", "compression"))
+    x, y = cut.particles["position"].T
+    strain, tip, depth, spacing = cut.particles["plastic_strain"], cut.tool, cut.tool["depth"], cut.tool["particle_spacing"]
+    x = x - tip["tip_x"]
+    fig, axes = figure(980, 430, 1, 2, width_ratios=(1, 1.5))
+    for ax, (left, right, bottom, top) in zip(axes, [(-8.6, 8.6, -16.4, 1.9), (-2.2, 1.6, -1.1, 1.6)]):
+        ax.set_xlim(left, right)
+        ax.set_ylim(bottom, top)
+        ax.set_aspect("equal")
+        ax.set_xlabel("x, mm")
+        inside = (x > left) & (x < right) & (y > bottom) & (y < top)
+        per_mm = ax.get_window_extent().width * 72 / fig.dpi / (right - left)
+        dots = ax.scatter(x[inside], y[inside], c=strain[inside], s=(1.3 * spacing * per_mm) ** 2, marker="s",
+                          linewidths=0, cmap=STRAIN, vmin=0, vmax=0.12, rasterized=True)
+        for face in cut.faces.values():
+            ax.plot(face[:, 0] - tip["tip_x"], face[:, 1], ",", color=WARM)
+        moved = dict(tip, tip_x=0.0)
+        for outline in tool_outlines(moved, left, right, top, bottom):
+            ax.add_patch(Polygon(outline, closed=True, facecolor="#f4f1ea", edgecolor=INK, linewidth=1.2, zorder=0.5))
+        centre = (bar_lead, depth - compression + bar_radius)
+        ax.add_patch(Circle(centre, bar_radius, facecolor="#f4f1ea", edgecolor=INK, linewidth=1.2, zorder=0.5))
+    axes[0].set_ylabel("y, mm")
+    bar = fig.colorbar(dots, ax=axes[1], shrink=0.85, aspect=24, pad=0.02)
+    bar.outline.set_visible(False)
+    bar.set_label("equivalent plastic strain")
+    return fig
+
+
 def experiment(results, name):
     """Results and history of a scene of bodies, columns as arrays."""
     kept = json.loads((results / f"{name}.json").read_text())
@@ -339,7 +373,7 @@ def work_precision(results):
 FIGURES = {"plane_chips": (chips, "plane_mouth"), "talk_forces": (talk, "talk"), "talk_effects": (effects, "talk_rake"),
            "bottom_force": (bottom, "talk_edge"), "wood_forces": (wood, "wood_rl"), "plane_forces": (plane, "plane_m12"),
            "laws": (laws, "laws"), "work_precision": (work_precision, "study_polymer"),
-           "bodies": (bodies, "carnot_gas.json")}
+           "veneer": (veneer, "veneer.h5"), "bodies": (bodies, "carnot_gas.json")}
 
 
 def main():

@@ -46,6 +46,8 @@ study study_wood wood_rl resolution.cells_through_chip=x0.75,x1.25 cut.speed=x2,
   pic_damping.rate=x0,x4 window.ahead+window.behind+window.below+window.above=x0.75 resolution.cell_stretch=3 \
   steady_state.not_before=x0.5 preset=draft --reference resolution.cells_through_chip=x1.5
 
+build/release/kerf simulate "$scenes/veneer.toml" -o results/experiments/veneer.h5
+
 # The same particles as an engine, a rubber band and a glued bar.
 for name in carnot_gas carnot_tungsten rubber_gough; do
   build/release/kerf simulate "$scenes/$name.toml" -o "results/experiments/$name.json"

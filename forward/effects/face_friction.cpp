@@ -18,8 +18,8 @@ void rub_faces(State& state, double coefficient, double stiffness) {
       slips[k] = 0.0;
       continue;
     }
-    const auto [j, t, slope, depth] = *touch;
-    const double stretch = std::hypot(1.0, slope), along_x = 1.0 / stretch, along_y = slope / stretch;
+    const auto [j, t, normal_x, normal_y, depth] = *touch;
+    const double stretch = std::hypot(normal_x, normal_y), along_x = normal_y / stretch, along_y = -normal_x / stretch;
     const double velocity_x = upper.velocity_x[k] - (1.0 - t) * lower.velocity_x[j] - t * lower.velocity_x[j + 1];
     const double velocity_y = upper.velocity_y[k] - (1.0 - t) * lower.velocity_y[j] - t * lower.velocity_y[j + 1];
     // The penalty of close_faces acts along the normal with `depth * stretch`.

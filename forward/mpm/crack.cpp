@@ -20,6 +20,24 @@ void add_pair_force(Crack& crack, std::size_t k, double x, double y) {
   crack.face[below].force_y[k] -= y;
 }
 
+/// From the centre of the nodes that a marker follows to the marker, mm. The kernel is weighted with masses and the face
+/// is where they end, so that they lie a third of a cell inside.
+struct Arm {
+  double x, y;
+};
+Arm arm(const State& state, const Face& face, Side side, std::size_t k, const Spline& sx, const Spline& sy) {
+  const Grid& grid = state.grid;
+  Arm sum{};
+  for (int j = 0; j < 3; ++j)
+    for (int i = 0; i < 3; ++i) {
+      const double share =
+          sx.weight(i) * sy.weight(j) * grid.side[side].mass[grid.node(sx.base + i, sy.base + j)] * face.inverse_mass[k];
+      sum.x -= share * (grid.origin_x + (sx.base + i) * grid.cell_x);
+      sum.y -= share * (grid.origin_y + (sy.base + j) * grid.cell_y);
+    }
+  return {sum.x + face.x[k], sum.y + face.y[k]};
+}
+
 void move_face(State& state, Face& face, Side side) {
   const Grid& grid = state.grid;
   const VelocityField& field = grid.side[side];
@@ -47,6 +65,12 @@ void move_face(State& state, Face& face, Side side) {
     face.moved_mass[k] = mass * mass / squares;
     face.velocity_x[k] = sum_x(momentum) / mass;
     face.velocity_y[k] = sum_y(momentum) / mass;
+    if (state.spin != 0.0) {
+      // Else the faces of a log that only turns would slide on each other, each being followed on its own side.
+      const Arm from = arm(state, face, side, k, sx, sy);
+      face.velocity_x[k] -= state.spin * from.y;
+      face.velocity_y[k] += state.spin * from.x;
+    }
     face.node_column[k] = sx.base;
     face.node_row[k] = sy.base;
     face.offset_x[k] = sx.f;
@@ -68,6 +92,11 @@ void spread_face(State& state, const Face& face, Side side) {
         field.force[2 * node] += share * face.force_x[k];
         field.force[2 * node + 1] += share * face.force_y[k];
       }
+    if (state.spin != 0.0) {
+      // The nodes lie elsewhere than the marker and lack a moment, which then the spindle has to bear.
+      const Arm from = arm(state, face, side, k, sx, sy);
+      state.work.tool -= state.step * state.spin * (face.force_y[k] * from.x - face.force_x[k] * from.y);
+    }
   }
 }
 
@@ -102,6 +131,30 @@ Bond coupled(const Cohesive& law, double normal, double shear, double& most) {
           law.mode_II->traction(most * critical_II) * shear / critical_II / most, most >= 1.0};
 }
 
+/// The face of a log has no end to search from: a marker closes on the neighbourhood of its own partner, or on nothing.
+std::optional<Overlap> overlap_on_spiral(const State& state, std::size_t k, std::size_t last, double most) {
+  const Crack& crack = state.crack;
+  const Face &upper = crack.face[above], &lower = crack.face[below];
+  const double reach = 2.0 * most, away_x = upper.x[k] - lower.x[k], away_y = upper.y[k] - lower.y[k];
+  if (away_x * away_x + away_y * away_y > reach * reach) return {};
+  const auto [n_x, n_y] = crack.normal(k, state.tool.x);
+  const auto along = [&](std::size_t i) { return n_y * (upper.x[k] - lower.x[i]) - n_x * (upper.y[k] - lower.y[i]); };
+  std::size_t j = std::min(k, last);
+  while (j > 0 && along(j) < 0.0) --j;
+  while (j < last && along(j + 1) > 0.0) ++j;
+  const double run = along(j) - along(j + 1);
+  if (along(j) < 0.0 || along(j + 1) > 0.0 || lower.inverse_mass[j] == 0.0 || lower.inverse_mass[j + 1] == 0.0)
+    return {};
+  const double t = along(j) / run;
+  const auto above_face = [&](std::size_t i) {
+    return n_x * (upper.x[k] - lower.x[i]) + n_y * (upper.y[k] - lower.y[i]);
+  };
+  const double slope = (above_face(j) - above_face(j + 1)) / run;
+  const double depth = -(above_face(j) + t * (above_face(j + 1) - above_face(j)));
+  if (depth <= 0.0 || depth > most) return {};
+  return Overlap{j, t, n_x - slope * n_y, n_y + slope * n_x, depth};
+}
+
 }  // namespace
 
 void move_markers(State& state) {
@@ -117,7 +170,9 @@ void pull_faces(State& state, const Cohesive& cohesive) {
   for (std::size_t k = 0; k < crack.size(); ++k) {
     if (upper.inverse_mass[k] == 0.0 || lower.inverse_mass[k] == 0.0) continue;
     if (!crack.intact[k]) continue;
-    const double opening = std::max(upper.y[k] - lower.y[k], 0.0), shear = upper.x[k] - lower.x[k];
+    const auto [n_x, n_y] = crack.normal(k, state.tool.x);
+    const double part_x = upper.x[k] - lower.x[k], part_y = upper.y[k] - lower.y[k];
+    const double opening = std::max(n_x * part_x + n_y * part_y, 0.0), shear = n_y * part_x - n_x * part_y;
     double &largest_normal = crack.largest_normal[k], &largest_shear = crack.largest_shear[k];
     const Bond bond = cohesive.mixed_mode == MixedMode::coupled
                           ? coupled(cohesive, opening, std::abs(shear), crack.largest_share[k])
@@ -126,10 +181,10 @@ void pull_faces(State& state, const Cohesive& cohesive) {
     largest_normal = std::max(largest_normal, opening);
     largest_shear = std::max(largest_shear, std::abs(shear));
     // Trapezoid over the step: the openings moved with these very velocities.
+    const double rate_x = upper.velocity_x[k] - lower.velocity_x[k], rate_y = upper.velocity_y[k] - lower.velocity_y[k];
     const double work_I =
-        0.5 * (normal_traction + crack.traction_normal[k]) * dt * (upper.velocity_y[k] - lower.velocity_y[k]) * length;
-    const double work_II =
-        0.5 * (shear_traction + crack.traction_shear[k]) * dt * (upper.velocity_x[k] - lower.velocity_x[k]) * length;
+        0.5 * (normal_traction + crack.traction_normal[k]) * dt * (n_x * rate_x + n_y * rate_y) * length;
+    const double work_II = 0.5 * (shear_traction + crack.traction_shear[k]) * dt * (n_y * rate_x - n_x * rate_y) * length;
     state.work.mode_I += work_I;
     state.work.mode_II += work_II;
     crack.taken[k] += (work_I + work_II) / length;
@@ -139,7 +194,8 @@ void pull_faces(State& state, const Cohesive& cohesive) {
       break_bond(state, cohesive, k);
       continue;
     }
-    add_pair_force(crack, k, -shear_traction * length, -normal_traction * length);
+    add_pair_force(crack, k, -(n_y * shear_traction + n_x * normal_traction) * length,
+                   -(n_y * normal_traction - n_x * shear_traction) * length);
   }
 }
 
@@ -152,8 +208,10 @@ void break_bond(State& state, const Cohesive& cohesive, std::size_t k) {
     const double share = std::min(opening / largest, 1.0);
     return law.area(largest) - 0.5 * law.traction(largest) * largest * (1.0 - share * share);
   };
-  const double normal = std::max(crack.face[above].y[k] - crack.face[below].y[k], 0.0);
-  const double shear = std::abs(crack.face[above].x[k] - crack.face[below].x[k]);
+  const auto [n_x, n_y] = crack.normal(k, state.tool.x);
+  const double part_x = crack.face[above].x[k] - crack.face[below].x[k];
+  const double part_y = crack.face[above].y[k] - crack.face[below].y[k];
+  const double normal = std::max(n_x * part_x + n_y * part_y, 0.0), shear = std::abs(n_y * part_x - n_x * part_y);
   crack.intact[k] = 0;
   crack.front = std::max(crack.front, crack.reference_x[k]);
   state.work.broken_length += crack.spacing;
@@ -167,10 +225,12 @@ std::optional<Overlap> overlap(const State& state, std::size_t k) {
   const Crack& crack = state.crack;
   const Face &upper = crack.face[above], &lower = crack.face[below];
   if (crack.size() < 2 || upper.inverse_mass[k] == 0.0) return {};
+  const std::size_t last = crack.size() - 2;
+  const double most = 2.0 * state.grid.cell_y;
+  if (crack.spiral) return overlap_on_spiral(state, k, last, most);
   const double x = upper.x[k];
   if (x < lower.x.front() || x > lower.x.back()) return {};
   // The lower face hardly moves: start where the reference spacing says and step to the segment that holds x.
-  const std::size_t last = crack.size() - 2;
   auto j = std::min(last, static_cast<std::size_t>((x - lower.x.front()) / crack.spacing));
   while (j > 0 && lower.x[j] > x) --j;
   while (j < last && lower.x[j + 1] < x) ++j;
@@ -178,13 +238,14 @@ std::optional<Overlap> overlap(const State& state, std::size_t k) {
   const double run = lower.x[j + 1] - lower.x[j];
   const double t = (x - lower.x[j]) / run, slope = (lower.y[j + 1] - lower.y[j]) / run;
   const double depth = lower.y[j] + t * run * slope - upper.y[k];
-  if (depth <= 0.0 || depth > 2.0 * state.grid.cell_y) return {};
-  return Overlap{j, t, slope, depth};
+  if (depth <= 0.0 || depth > most) return {};
+  return Overlap{j, t, -slope, 1.0, depth};
 }
 
 void push_apart(Crack& crack, std::size_t k, const Overlap& touch, double x, double y) {
   Face &upper = crack.face[above], &lower = crack.face[below];
-  const auto [j, t, slope, depth] = touch;
+  const std::size_t j = touch.segment;
+  const double t = touch.t;
   upper.force_x[k] += x;
   upper.force_y[k] += y;
   lower.force_x[j] -= (1.0 - t) * x;
@@ -199,7 +260,7 @@ void close_faces(State& state, double stiffness) {
     const std::optional<Overlap> touch = overlap(state, k);
     if (!touch) continue;
     const double push = stiffness * touch->depth * crack.spacing;
-    push_apart(crack, k, *touch, -touch->slope * push, push);
+    push_apart(crack, k, *touch, touch->normal_x * push, touch->normal_y * push);
     state.contact_energy += 0.5 * push * touch->depth;
   }
 }

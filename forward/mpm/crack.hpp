@@ -14,7 +14,7 @@ namespace kerf::forward {
 /// Reads the projected velocity at every marker, moves it, and clears its force.
 void move_markers(State& state);
 
-/// Cohesive tractions between unbroken pairs. Openings are measured in the crack plane's directions; each mode follows
+/// Cohesive tractions between unbroken pairs. Openings are measured in the crack path's directions; each mode follows
 /// its own law, unloading to the origin; the pair breaks, both tractions at once, when
 /// (G_I/G_Ic)^n + (G_II/G_IIc)^m = 1 (theory Eq. 8), in the reading that the scene names (see MixedMode).
 void pull_faces(State& state, const Cohesive& cohesive);
@@ -22,11 +22,11 @@ void pull_faces(State& state, const Cohesive& cohesive);
 /// Takes a pair's tractions away; what its laws had used up is added to the broken energy.
 void break_bond(State& state, const Cohesive& cohesive, std::size_t k);
 
-/// An upper marker inside the lower face: at the share t of the lower segment j, of this slope, `depth` below it (mm,
-/// along y).
+/// An upper marker inside the lower face: at the share t of the lower segment j, `depth` below it along the normal of
+/// the crack path (mm). The segment's own normal has a component of one along that.
 struct Overlap {
   std::size_t segment;
-  double t, slope, depth;
+  double t, normal_x, normal_y, depth;
 };
 std::optional<Overlap> overlap(const State& state, std::size_t k);
 

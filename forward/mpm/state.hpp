@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -149,7 +150,7 @@ struct Face {
 /// Marker pairs along the crack plane: entry k of one face is opposite entry k of the other.
 struct Crack {
   std::array<Face, 2> face;
-  std::vector<double> reference_x;
+  std::vector<double> reference_x;  ///< along the path
   std::vector<double> largest_normal, largest_shear;  ///< openings so far, mm
   std::vector<double> largest_share;                  ///< of the critical openings so far, where the laws are coupled
   std::vector<double> traction_normal, traction_shear;
@@ -157,11 +158,16 @@ struct Crack {
   std::vector<std::uint8_t> intact;
   double spacing = 0;
   double front = 0;  ///< reference position of the foremost broken pair
+  std::optional<Spiral> spiral;  ///< that the path follows in a log; absent: the plane y = 0
   /// What a pair remembers; zero to begin with.
   std::array<std::vector<double>*, 6> memory() {
     return {&largest_normal, &largest_shear, &largest_share, &traction_normal, &traction_shear, &taken};
   }
   std::size_t size() const { return reference_x.size(); }
+  /// Normal of the crack path at pair k, from the lower to the upper side, when the tool has travelled so far.
+  Spiral::Direction normal(std::size_t k, double travel) const {
+    return spiral ? spiral->normal(reference_x[k], travel) : Spiral::Direction{0.0, 1.0};
+  }
 };
 
 struct ToolState {
@@ -202,6 +208,7 @@ struct State {
   Work work;
   double contact_energy = 0;  ///< stored in contact springs this instant, N mm/mm
   double time = 0, step = 0;  ///< step: the time step
+  double spin = 0;            ///< of a log, rad/s
   double density = 0;         ///< tonne/mm^3
   double smallest_mass = 0;   ///< nodes below it are empty
   double fed_to = 0;          ///< right end of the material laid so far

@@ -197,6 +197,7 @@ void follow_face(State& state, double depth, double lift, bool sinks) {
   for (std::size_t k = 0; k < state.crack.size(); ++k) {
     const double ahead = face.x[k] - tool.x;
     if (face.inverse_mass[k] == 0.0 || ahead < 0.1 * depth || ahead > 0.3 * depth) continue;
+    if (std::abs(face.y[k] - tool.y) > depth) continue;  // the far side of a log
     sum += face.y[k];
     count += 1.0;
   }
@@ -215,6 +216,8 @@ void press(State& state, const Contact& contact, const Scene& scene, const Press
   const Motion motion{tool.speed, contact.follows_tip ? tool.vertical_speed : 0.0};
   const Outline outline = contact.outline(scene, tool.tip_radius);
   const bool rubs = contact.friction > 0.0, blunts = tool.tip_growth != 0.0;
+  // The rake face is drawn without end; in a log what is still bonded lies beyond it, around the corner.
+  const bool bounded = scene.log && contact.surface == Surface::upper_face;
   const Outline before = blunts ? contact.outline(scene, tool.tip_radius - tool.tip_growth) : outline;
 
   struct Hit {
@@ -226,6 +229,7 @@ void press(State& state, const Contact& contact, const Scene& scene, const Press
   for (std::size_t k = 0; k < face.size(); ++k) {
     if (face.inverse_mass[k] == 0.0) continue;
     const double x = face.x[k] - tool.x, y = face.y[k] - frame_y;
+    if (bounded && y < -scene.cut.depth) continue;
     const Touch touch = outline.touch(x, y);
     if (touch.distance >= 0.0) {
       if (rubs) face.slip[contact.slip][k] = 0.0;

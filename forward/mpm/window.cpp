@@ -22,14 +22,18 @@ void push(Particles& p, double x, double y, double volume) {
   p.volume.back() = volume;
 }
 
-/// A marker pair at reference position `at` of the crack plane; its upper marker may lie elsewhere.
-void add_pair(Crack& crack, double at, double upper_x, double upper_y, bool intact) {
+struct Point {
+  double x, y;
+};
+
+/// A marker pair at reference position `at` of the crack path.
+void add_pair(Crack& crack, double at, Point lower, Point upper, bool intact) {
   crack.reference_x.push_back(at);
   crack.intact.push_back(intact);
   if (!intact) crack.front = std::max(crack.front, at);
   for (auto* values : crack.memory()) values->push_back(0.0);
-  crack.face[below].add(at, 0.0);
-  crack.face[above].add(upper_x, upper_y);
+  crack.face[below].add(lower.x, lower.y);
+  crack.face[above].add(upper.x, upper.y);
 }
 
 /// The tool meets the layer's end first: the upper face goes on around it, down the end to the corner at the origin.
@@ -38,7 +42,10 @@ void wrap_end(State& state, const Scene& scene) {
   const double spacing = state.crack.spacing;
   const int count = std::max(1, static_cast<int>(std::lround(scene.cut.depth / spacing)));
   const double along_end = scene.cut.depth / count;
-  for (int i = count - 1; i >= 0; --i) add_pair(state.crack, -spacing * (i + 0.5), 0.0, along_end * (i + 0.5), false);
+  for (int i = count - 1; i >= 0; --i) {
+    const double at = -spacing * (i + 0.5);
+    add_pair(state.crack, at, {at, 0.0}, {0.0, along_end * (i + 0.5)}, false);
+  }
 }
 
 /// One column of cells at rest, from x on, both sides of the plane. Particles are appended unsorted.
@@ -52,10 +59,51 @@ void feed_column(State& state, const Scene& scene, double x) {
 
   for (int i = 0; i < scene.resolution.markers_per_cell; ++i) {
     const double at = x + state.crack.spacing * (i + 0.5);
-    add_pair(state.crack, at, at, 0.0, at > scene.cut.notch * scene.cut.depth);
+    add_pair(state.crack, at, {at, 0.0}, {at, 0.0}, at > scene.cut.notch * scene.cut.depth);
     if (state.follows_top) state.top.add(at, scene.cut.depth);
   }
   state.fed_to = x + state.grid.cell_x;
+}
+
+/// The whole log at rest, from the spindle outwards, in rows along the spiral, and the sides of its particles. Where
+/// the path is not prepared to part, the layer belongs to the lower side.
+std::vector<Side> lay_log(State& state, const Scene& scene) {
+  const Spiral& path = scene.log->path;
+  const int per_cell = scene.resolution.particles_per_cell_side;
+  const double gap = scene.cell() / per_cell, deepest = scene.log->core - 1.5 * scene.cell();
+  const auto at_height = [&](double s, double height) {
+    const double angle = path.angle_at(s), r = path.radius_at(s) + height;
+    return Point{r * std::sin(angle), r * std::cos(angle) - path.radius()};
+  };
+  std::vector<Side> side_of;
+  Particles& p = state.particles;
+  const auto columns = static_cast<int>(std::lround(path.turn_length() / gap));
+  const double column = path.turn_length() / columns;
+  const int up = per_cell * scene.resolution.cells_through_chip;
+  const int down = static_cast<int>(std::ceil((path.radius() - deepest) / gap));
+  for (int i = 0; i < columns; ++i) {
+    const double s = column * (i + 0.5), r = path.radius_at(s), angle = path.angle_at(s);
+    for (int j = -down; j < up; ++j) {
+      const double height = gap * (j + 0.5);
+      if (r + height < deepest) continue;
+      const auto [x, y] = at_height(s, height);
+      push(p, x, y, gap * column * (r + height) / r);
+      if (p.has_axes) {
+        p.axis_x.back() = std::cos(angle);
+        p.axis_y.back() = -std::sin(angle);
+      }
+      side_of.push_back(j >= 0 && s < scene.log->length ? above : below);
+    }
+  }
+  const auto pairs = static_cast<int>(scene.log->length / state.crack.spacing);
+  for (int i = 0; i < pairs; ++i) {
+    const double at = state.crack.spacing * (i + 0.5);
+    const Point place = at_height(at, 0.0), top = at_height(at, scene.cut.depth);
+    add_pair(state.crack, at, place, place, at > scene.cut.notch * scene.cut.depth);
+    if (state.follows_top) state.top.add(top.x, top.y);
+  }
+  state.crack.spiral = path;
+  return side_of;
 }
 
 template <class T>
@@ -195,6 +243,25 @@ std::vector<Side> sides(const Particles& p) {
   return side;
 }
 
+/// Cells of the window around the tip.
+struct Extent {
+  int ahead, behind, below, above;
+};
+
+Extent extent_of(const Scene& scene) {
+  const int through = scene.resolution.cells_through_chip;
+  const auto up = [&](double depths) { return static_cast<int>(std::lround(depths * through)); };
+  const auto along = [&](double depths) {
+    return static_cast<int>(std::lround(depths * through / scene.resolution.cell_stretch));
+  };
+  const Window& window = scene.window;
+  if (scene.log) {  // with a cell of room all around, and half a depth for its growing surface
+    const double radius = scene.log->path.radius() / scene.cut.depth + 1.5;
+    return {up(radius), up(std::max(radius, window.behind)), up(2.0 * radius), up(window.above)};
+  }
+  return {along(window.ahead), along(window.behind), up(window.below), up(window.above)};
+}
+
 /// The stable time step: an elastic wave's transit of a cell, along and across, in the directions that the grain has
 /// now.
 double stable_step(const State& state, const Scene& scene) {
@@ -208,7 +275,7 @@ double stable_step(const State& state, const Scene& scene) {
         };
         double most = transits(1.0, 0.0);
         if constexpr (std::decay_t<decltype(law)>::has_axes)
-          for (std::size_t i = p.begin[above]; i < p.begin[above + 1]; ++i)
+          for (std::size_t i = p.begin[scene.log ? below : above]; i < p.begin[above + 1]; ++i)
             most = std::max(most, transits(p.axis_x[i], -p.axis_y[i]));
         return most;
       },
@@ -221,24 +288,20 @@ double stable_step(const State& state, const Scene& scene) {
 State lay_out(const Scene& scene) {
   State state;
   Grid& grid = state.grid;
-  const int through = scene.resolution.cells_through_chip;
-  const auto cells_up = [&](double depths) { return static_cast<int>(std::lround(depths * through)); };
-  const auto cells_along = [&](double depths) {
-    return static_cast<int>(std::lround(depths * through / scene.resolution.cell_stretch));
-  };
+  const Extent extent = extent_of(scene);
   grid.cell_x = scene.cell_length();
   grid.cell_y = scene.cell();
   grid.clamps_end = scene.grips.has_value();
   grid.inverse_cell_x = 1.0 / grid.cell_x;
   grid.inverse_cell_y = 1.0 / grid.cell_y;
-  grid.columns = cells_along(scene.window.behind) + cells_along(scene.window.ahead) + 2 * margin;
+  grid.columns = extent.behind + extent.ahead + 2 * margin;
   constexpr int batch = static_cast<int>(lane_count);
   grid.stride = (grid.columns + batch - 1) / batch * batch;
-  grid.rows = cells_up(scene.window.below) + cells_up(scene.window.above) + 2 * margin;
-  grid.origin_x = -(cells_along(scene.window.behind) + margin) * grid.cell_x;
+  grid.rows = extent.below + extent.above + 2 * margin;
+  grid.origin_x = -(extent.behind + margin) * grid.cell_x;
   // Two node rows below the block's lower end hold it. The crack plane lies midway between two rows: with a row in the
   // plane the faces' nodes get half a cell of material each, and the forces converge three times more slowly.
-  grid.origin_y = -(cells_up(scene.window.below) + 1.5) * grid.cell_y;
+  grid.origin_y = -(extent.below + 1.5) * grid.cell_y;
   grid.left = grid.origin_x + margin * grid.cell_x;
   grid.top = scene.window.above * scene.cut.depth;
   const std::size_t nodes = grid.nodes();
@@ -259,8 +322,12 @@ State lay_out(const Scene& scene) {
     if (contact.friction > 0.0) surface(state, contact.surface).slip.emplace_back();
   if (scene.face_friction) state.crack.face[above].slip.emplace_back();  // behind those of the tool
   if (!scene.grips) wrap_end(state, scene);
-  for (int i = 0; i < cells_along(scene.window.ahead); ++i) feed_column(state, scene, i * grid.cell_x);
-  sort_into_batches(state, scene, sides(state.particles));
+  if (scene.log) {
+    sort_into_batches(state, scene, lay_log(state, scene));
+  } else {
+    for (int i = 0; i < extent.ahead; ++i) feed_column(state, scene, i * grid.cell_x);
+    sort_into_batches(state, scene, sides(state.particles));
+  }
   state.step = stable_step(state, scene);
   gather_momentum(state);
   return state;
@@ -269,7 +336,7 @@ State lay_out(const Scene& scene) {
 void shift_window(State& state, const Scene& scene) {
   state.grid.origin_x += state.grid.cell_x;
   state.grid.left += state.grid.cell_x;
-  feed_column(state, scene, state.fed_to);
+  if (!scene.log) feed_column(state, scene, state.fed_to);
   sort_into_batches(state, scene, sides(state.particles));
   if (state.particles.has_axes) state.step = stable_step(state, scene);
   gather_momentum(state);

@@ -172,7 +172,8 @@ void summarise(CutResult& result, const Recorder& recorder, const State& state, 
   for (const FaceResult& face : result.faces) normal += face.normal.value;
   result.edge_share = normal > 0.0 ? mean(&ForceSample::at_edge).value / normal : 0.0;
   result.inertia_share = state.density * scene.cut.depth * scene.cut.speed * scene.cut.speed / result.F_c.value;
-  result.room_ahead = scene.window.ahead * scene.cut.depth - result.softening_lead.value;
+  const double ahead = scene.log ? scene.log->length - state.tool.x : scene.window.ahead * scene.cut.depth;
+  result.room_ahead = ahead - result.softening_lead.value;
 
   const double mode_I = history.back().fracture_I - history[from].fracture_I;
   const double fracture = history.back().ledger.fracture - history[from].ledger.fracture;

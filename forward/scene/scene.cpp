@@ -87,6 +87,12 @@ std::vector<Block> declare() {
                       number("width", "1", 0.01, 5, "of a grip along the arm, in depths of cut").or_else("0.25"),
                       number("gauge", "1", 0.05, 5, "length over which an arm's rotation is read, in depths of cut")
                           .or_else("0.5")}},
+      {.path = "log",
+       .variant = "",
+       .meaning = "a log that turns against the tool instead of a flat piece of work, and is peeled along a spiral; "
+                  "x of the material runs around it, y outwards. A spindle holds what lies deeper than window.below; "
+                  "the layer is prepared to part over cut.travel and window.ahead",
+       .parameters = {number("radius", "mm", 1e-3, 1e4, "of the log before it is peeled")}},
       {.path = "chip_breaker",
        .variant = "",
        .meaning = "a second iron on the rake face that turns the chip",
@@ -269,6 +275,31 @@ Friction read_friction(const Values& friction) {
           .nose_bar = own("nose_bar")};
 }
 
+Log read_log(const Values& log, const Scene& scene) {
+  const double depth = scene.cut.depth, radius = log.number("radius") - depth;
+  const double core = radius - scene.window.below * depth;
+  if (core < 3.0 * scene.cell())
+    throw InputError(fmt::format(
+        "{}: radius = {:.4g} mm leaves the spindle {:.4g} mm below a veneer of {:.4g} mm and window.below = {:g} depths "
+        "(allowed from three cells, {:.4g} mm)",
+        log.where("radius"), radius + depth, core, depth, scene.window.below, 3.0 * scene.cell()));
+  const Spiral path(radius, depth);
+  const double length = (scene.cut.travel + scene.window.ahead) * depth, longest = path.turn_length() - 2.0 * depth;
+  if (length > longest)
+    throw InputError(fmt::format(
+        "{}: cut.travel + window.ahead = {:.4g} depths is more than one turn of a log of {:.4g} mm has (allowed up to "
+        "{:.4g})",
+        log.where("radius"), length / depth, radius + depth, longest / depth));
+  const auto refuse = [&](const char* block, const char* why) {
+    throw InputError(fmt::format("{}: a scene with [log] has no {}: {}", log.where("radius"), block, why));
+  };
+  if (scene.grips) refuse("[grips]", "a specimen does not turn");
+  if (scene.sole) refuse("[sole]", "it would slide on a flat surface");
+  if (scene.bridging && scene.bridging->cut) refuse("[bridging] tool = \"cuts\"", "the edge is not followed around");
+  if (scene.resolution.cell_stretch != 1.0) refuse("resolution.cell_stretch", "its grain has every direction");
+  return {.path = path, .core = core, .length = length};
+}
+
 Cut read_cut(const Values& cut) {
   return {.depth = cut.number("depth"),
           .speed = cut.number("speed"),
@@ -306,6 +337,7 @@ Scene read_scene(const Document& document) {
               .bridging = {},
               .face_friction = {},
               .grips = {},
+              .log = {},
               .pic_damping = {},
               .xpic_damping = {},
               .thermostat = {},
@@ -371,6 +403,7 @@ Scene read_scene(const Document& document) {
     scene.xpic_damping = {.rate = xpic->number("rate"), .order = whole_number(*xpic, "order")};
   if (const Values* thermostat = block("thermostat"))
     scene.thermostat = {.kinetic_share = thermostat->number("kinetic_share"), .gain = thermostat->number("gain")};
+  if (const Values* log = block("log")) scene.log = read_log(*log, scene);
   return scene;
 }
 

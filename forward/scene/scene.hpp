@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "forward/scene/spiral.hpp"
 #include "forward/scene/tool_face.hpp"
 #include "models/base/document.hpp"
 #include "models/laws/material.hpp"
@@ -101,6 +102,13 @@ struct Grips {
   double lower_arm;  ///< its height; the upper arm's is the depth of cut
 };
 
+/// A log that turns against the tool instead of a flat piece of work: the layer is a veneer.
+struct Log {
+  Spiral path;
+  double core;    ///< radius that the spindle holds, mm
+  double length;  ///< of the path that is prepared to part, mm
+};
+
 /// FLIP blended towards PIC at a rate in cell transits of the elastic wave: beta = 1 - exp(-rate CFL) each step.
 struct PicDamping {
   double rate;
@@ -148,6 +156,7 @@ struct Scene {
   std::optional<Bridging> bridging;
   std::optional<FaceFriction> face_friction;
   std::optional<Grips> grips;
+  std::optional<Log> log;
   std::optional<PicDamping> pic_damping;
   std::optional<XpicDamping> xpic_damping;
   std::optional<Thermostat> thermostat;

@@ -39,7 +39,8 @@ ExpectedCost expected_cost(const Scene& scene, const State& state) {
   const double laid = window.ahead * (scene.base_height() + 1.0);
   const auto particles_until = [&](double depths) {
     const double more =
-        scene.grips ? 0.0
+        scene.grips || scene.log
+            ? 0.0
                     : mean_of_filling(depths, window.behind) * window.below + mean_of_filling(depths, window.above);
     return static_cast<double>(state.particles.begin[2]) * (1.0 + more / laid);
   };

@@ -122,10 +122,12 @@ void print_cut(const Scene& scene) {
     fmt::print("A specimen with arms of {:g} and {:g} mm is pulled apart at {:g} m/s. The work is an\n",
                scene.cut.depth, scene.grips->lower_arm, scene.cut.speed / 1e3);
   else
-    fmt::print("A layer of {:g} mm is cut at {:g} m/s by a rigid tool with a rake angle of {:g} deg. The work is an\n",
-               scene.cut.depth, scene.cut.speed / 1e3, scene.tool.rake * degrees);
+    fmt::print("{} {:g} mm is {} at {:g} m/s by a rigid tool with a rake angle of {:g} deg. The work is an\n",
+               scene.log ? "A veneer of" : "A layer of", scene.cut.depth, scene.log ? "peeled off a log" : "cut",
+               scene.cut.speed / 1e3, scene.tool.rake * degrees);
   fmt::print(
-      "elastic-plastic solid in plane strain that separates along the plane y = 0; the cohesive law passes on\n");
+      "elastic-plastic solid in plane strain that separates along {}; the cohesive law passes on\n",
+      scene.log ? "a spiral" : "the plane y = 0");
   fmt::print("at most {:g} MPa (mode I) and {:g} MPa (mode II), and takes {:g} and {:g} J/m^2 to break.\n\n",
              scene.cohesive.mode_I->strength(), scene.cohesive.mode_II->strength(),
              1e3 * scene.cohesive.mode_I->toughness(), 1e3 * scene.cohesive.mode_II->toughness());
@@ -137,8 +139,12 @@ void print_discretisation(const Scene& scene, const State& state) {
   fmt::print("Discretisation\n");
   fmt::print("  cells of {:g} mm, {} through the chip, {} x {} particles each: {} particles\n", scene.cell(),
              scene.resolution.cells_through_chip, scene.particles_along_cell(), side, state.particles.begin[2]);
-  fmt::print("  window around the tip, in depths: {:g} ahead, {:g} behind, {:g} below, {:g} above; it travels along\n",
-             window.ahead, window.behind, window.below, window.above);
+  if (scene.log)
+    fmt::print("  the whole log, turning; the veneer up to {:g} depths above the tip\n", window.above);
+  else
+    fmt::print(
+        "  window around the tip, in depths: {:g} ahead, {:g} behind, {:g} below, {:g} above; it travels along\n",
+        window.ahead, window.behind, window.below, window.above);
   fmt::print("  time step {:.3g} us ({:g} of an elastic wave's transit of a cell)\n", 1e6 * state.step,
              scene.resolution.courant_number);
   // The mixed-mode zone is shorter still; this is the length over which mode I traction acts (Hillerborg).
