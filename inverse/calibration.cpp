@@ -24,7 +24,10 @@ Fit conclude(const Job& job, const Objective& objective, SearchResult found) {
           .share = {},
           .at = std::move(found.best),
           .residuals = {},
+          .residual_errors = objective.misfit().residual_errors(),
           .identifiability = {},
+          .error_budget = {},
+          .fitted_errors = {},
           .at_jump = found.model ? found.model->at_jump() : CutMask(),
           .resampling = {},
           .has_slopes = found.model.has_value(),
@@ -36,6 +39,8 @@ Fit conclude(const Job& job, const Objective& objective, SearchResult found) {
   const Misfit& misfit = objective.misfit();
   fit.identifiability = identify(*found.model, misfit, objective.space(), job.derived);
   add_profiles(fit.identifiability, *found.model, misfit, objective.space(), job.derived);
+  fit.error_budget = error_budget(fit.identifiability, misfit, found.model->known());
+  fit.fitted_errors = fitted_errors(fit.identifiability, *found.model, misfit, objective.space());
   fit.resampling = resample(*found.model, misfit, objective.space(), job);
   return fit;
 }

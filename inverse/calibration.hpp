@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "inverse/error_propagation.hpp"
 #include "inverse/identifiability.hpp"
 #include "inverse/job.hpp"
 #include "inverse/left_out.hpp"
@@ -19,7 +20,10 @@ struct Fit {
   std::optional<CuttingShare> share;
   Evaluation at;
   Residuals residuals;
+  Observations residual_errors;  ///< standard deviations of measured - simulated
   Identifiability identifiability;
+  std::vector<std::optional<VarianceShares>> error_budget;  ///< see error_budget()
+  Observations fitted_errors;                               ///< see fitted_errors(); empty without slopes
   CutMask at_jump;  ///< cuts within a difference step of another branch; empty without slopes
   Resampling resampling;
   bool has_slopes = false;  ///< false: the budget did not allow the differences that errors need

@@ -96,19 +96,21 @@ Json rows(const Eigen::MatrixXd& matrix) {
 Json observable(const Job& job, const Fit& fit, const Misfit& misfit, std::size_t index, std::size_t k) {
   const RunRecord& run = fit.at.runs[index];
   const std::array<Estimate, observable_count> all{run.F_c, run.F_t, run.chip_ratio, run.chip_curvature};
-  const double friction = ParameterSpace(job).friction(fit.at.point);
-  const double edge = fit.residuals.edge_force * misfit.edge_share(static_cast<Observable>(k), friction);
+  const auto row = static_cast<Eigen::Index>(index), column = static_cast<Eigen::Index>(k);
+  const Observations fitted = misfit.fitted(fit.at.simulated, fit.at.point, fit.residuals.edge_force);
   const std::string unit = observable_units[k];
   Json entry{{"unit", unit},
              {"simulated", in_unit(all[k].value, unit)},
              {"simulated_se", in_unit(all[k].standard_error, unit)},
-             {"fitted", in_unit(all[k].value + edge, unit)}};
+             {"fitted", in_unit(fitted(row, column), unit)}};
+  if (fit.has_slopes && fit.at.usable[index]) entry["fitted_se"] = in_unit(fit.fitted_errors(row, column), unit);
   const std::optional<Estimate>& measured = job.cuts[index].measured[k];
   if (!measured) return entry;
   entry["measured"] = in_unit(measured->value, unit);
   entry["se"] = in_unit(measured->standard_error, unit);
-  const auto row = static_cast<Eigen::Index>(index * observable_count + k);
-  entry["weighted_residual"] = fit.at.usable[index] ? number(-fit.residuals.standardised[row]) : Json(nullptr);
+  entry["residual_sd"] = in_unit(fit.residual_errors(row, column), unit);
+  const Eigen::Index place = row * static_cast<Eigen::Index>(observable_count) + column;
+  entry["weighted_residual"] = fit.at.usable[index] ? number(-fit.residuals.standardised[place]) : Json(nullptr);
   return entry;
 }
 
@@ -145,6 +147,7 @@ Json trace(const Job& job, const std::vector<TraceEntry>& entries) {
     if (job.edge_force) point["edge_force"] = in_unit(entry.edge_force, "N/mm");
     all.push_back({{"step", entry.what},
                    {"runs", entry.runs},
+                   {"core_s", entry.core_seconds},
                    {"chi2", number(entry.chi2)},
                    {"failed_cuts", entry.failed_cuts},
                    {"parameters", std::move(point)}});
@@ -205,6 +208,35 @@ Json identifiability(const Identifiability& known) {
           {"interval_half_width_in_se", number(known.quantile)}};
 }
 
+/// The free parameters of a search without slopes, which judges none of them.
+Json where_it_stopped(const Job& job, const Fit& fit) {
+  const ParameterSpace space(job);
+  Json point = Json::object();
+  for (Eigen::Index j = 0; j < space.dimension(); ++j) {
+    const FreeParameter& p = space.parameters()[static_cast<std::size_t>(j)];
+    point[p.name] = {{"value", in_unit(space.value(j, fit.at.point[j]), p.unit)}, {"unit", p.unit}, {"path", p.path}};
+  }
+  return point;
+}
+
+/// Shares of the variance by source, of every parameter and derived quantity that the data see.
+Json error_budget(const Fit& fit) {
+  Json all = Json::object();
+  auto shares = fit.error_budget.begin();
+  for (const std::vector<ParameterEstimate>* estimates :
+       {&fit.identifiability.parameters, &fit.identifiability.derived})
+    for (const ParameterEstimate& p : *estimates) {
+      const std::optional<VarianceShares>& found = *shares++;
+      Json row = nullptr;
+      if (found) {
+        for (std::size_t s = 0; s < error_source_count; ++s) row[error_source_names[s]] = number(found->source[s]);
+        row["unexplained"] = number(found->unexplained);
+      }
+      all[p.name] = std::move(row);
+    }
+  return all;
+}
+
 Json free_start(const Job& job, const Calibration& calibration) {
   const ParameterSpace space(job);
   Json start = Json::object();
@@ -234,9 +266,14 @@ Json calibration_json(const Job& job, const Calibration& calibration, const Cali
   result["runs"] = cost.runs;
   result["failed_runs"] = cost.failed_runs;
   result["record_runs"] = cost.record_runs;
+  result["core_s"] = cost.core_seconds;
   result["wall_s"] = cost.wall_seconds;
   result["noise_audit"] = calibration.audit ? noise_audit(*calibration.audit, job.optimiser) : Json(nullptr);
   result["identifiability"] = identifiability(fit.identifiability);
+  if (fit.has_slopes)
+    result["error_budget"] = error_budget(fit);
+  else
+    result["stopped_at"] = where_it_stopped(job, fit);
   result["resampling"] = resampling(fit);
   result["alternatives"] = Json::array();
   for (const Fit& other : calibration.alternatives) add_fit(result["alternatives"].emplace_back(Json::object()), other);

@@ -185,7 +185,6 @@ Identifiability identify(const LocalModel& model, const Misfit& misfit, const Pa
 
   // One unit for every column, its logarithm, so that singular values compare. An edge force of zero has none: the
   // largest measured F_t stands in.
-  Eigen::MatrixXd jacobian = residual_slopes(model, misfit, centre_point, here.edge_force);
   Eigen::VectorXd unit(all);  // d(coordinate or F_b) / d ln(parameter)
   for (Eigen::Index j = 0; j < n; ++j) {
     const double value = space.value(j, estimator.point[j]);
@@ -195,7 +194,8 @@ Identifiability identify(const LocalModel& model, const Misfit& misfit, const Pa
     const double typical = misfit.measured().col(static_cast<Eigen::Index>(Observable::F_t)).cwiseAbs().maxCoeff();
     unit[n] = here.edge_force != 0 ? std::abs(here.edge_force) : std::max(typical, 1e-12);
   }
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(jacobian * unit.asDiagonal(), Eigen::ComputeThinU | Eigen::ComputeFullV);
+  result.jacobian = residual_slopes(model, misfit, centre_point, here.edge_force) * unit.asDiagonal();
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(result.jacobian, Eigen::ComputeThinU | Eigen::ComputeFullV);
   result.singular_values = Eigen::VectorXd::Zero(all);
   result.singular_values.head(svd.singularValues().size()) = svd.singularValues();
   result.singular_vectors = svd.matrixV();
@@ -223,6 +223,8 @@ Identifiability identify(const LocalModel& model, const Misfit& misfit, const Pa
                                      ? covariance(a, b) / std::sqrt(covariance(a, a) * covariance(b, b))
                                      : std::numeric_limits<double>::quiet_NaN();
 
+  result.covariance = covariance * result.error_scale * result.error_scale;
+
   const double allowed = std::pow(result.quantile * result.error_scale, 2);
   for (Eigen::Index j = 0; j < all; ++j) {
     ParameterEstimate estimate;
@@ -243,10 +245,9 @@ Identifiability identify(const LocalModel& model, const Misfit& misfit, const Pa
       estimate.value = std::clamp(space.value(j, estimator.point[j]), parameter.lower, parameter.upper);
       estimate.bounds = {parameter.lower, parameter.upper};
     }
-    const double slope = is_edge ? 1 : space.slope(j, estimator.point[j]);
-    estimate.standard_error = seen[static_cast<std::size_t>(j)]
-                                  ? std::sqrt(covariance(j, j)) * unit[j] * slope * result.error_scale
-                                  : infinity;
+    estimate.slope = Eigen::VectorXd::Unit(all, j) * unit[j] * (is_edge ? 1 : space.slope(j, estimator.point[j]));
+    estimate.standard_error =
+        seen[static_cast<std::size_t>(j)] ? std::sqrt(result.covariance(j, j)) * estimate.slope[j] : infinity;
     const double centre = is_edge ? here.edge_force : estimator.point[j];
     const auto at = [&](double coordinate) { return estimator.held(j, coordinate); };
     const Limit low = find_limit(at, here.chi2, centre, is_edge ? estimate.bounds.lower : space.lower()[j], allowed);
@@ -269,12 +270,12 @@ Identifiability identify(const LocalModel& model, const Misfit& misfit, const Pa
                                .unit = quantity.unit,
                                .interval = {},
                                .bounds = range_of(quantity, space.parameters())};
-    const Eigen::VectorXd slope = logarithmic_slope(quantity, values, all);
+    estimate.slope = logarithmic_slope(quantity, values, all);
     estimate.value = quantity.of(std::vector<double>(values.begin(), values.end()));
-    estimate.standard_error = std::sqrt(slope.dot(covariance * slope)) * result.error_scale;
+    estimate.standard_error = std::sqrt(estimate.slope.dot(result.covariance * estimate.slope));
     for (Eigen::Index c = 0; c < all; ++c)
       if (result.singular_values[c] <= unseen * result.singular_values[0] &&
-          std::abs(result.singular_vectors.col(c).dot(slope)) > 1e-6 * slope.norm())
+          std::abs(result.singular_vectors.col(c).dot(estimate.slope)) > 1e-6 * estimate.slope.norm())
         estimate.standard_error = infinity;
     const auto at = [&](double value) { return estimator.held(quantity, value); };
     const Limit low = find_limit(at, here.chi2, estimate.value, estimate.bounds.lower, allowed);

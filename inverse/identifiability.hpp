@@ -38,9 +38,10 @@ struct ParameterEstimate {
   std::string unit;  ///< to show it in
   bool key = false;
   double value = 0;
-  double standard_error = 0;  ///< infinite when the data do not see the parameter
-  Interval interval;          ///< 95 %, by profile
-  Interval bounds;            ///< what was searched
+  double standard_error = 0;   ///< infinite when the data do not see the parameter
+  Eigen::VectorXd slope = {};  ///< d value / d ln(parameter) of all parameters, F_b last
+  Interval interval;           ///< 95 %, by profile
+  Interval bounds;             ///< what was searched
   Verdict verdict = Verdict::not_measurable;
   std::optional<ProfileEnd> lower_end = {}, upper_end = {};  ///< where the interval ends inside the bounds
   std::optional<TradeOff> trade_off = {};
@@ -53,9 +54,11 @@ struct Identifiability {
   std::vector<ParameterEstimate> derived;     ///< the job's derived quantities; `path` is the expression
   double chi2 = 0;
   int degrees_of_freedom = 0;
-  double error_scale = 1;  ///< sqrt(chi2/dof) when above 1: standard errors and intervals contain this factor
-  double quantile = 1.96;  ///< half width of a 95 % interval in standard errors: Student's t when scaled, else normal
-  Eigen::VectorXd singular_values;   ///< of the weighted Jacobian by ln(parameter), falling; 1/s is the log error
+  double error_scale = 1;    ///< sqrt(chi2/dof) when above 1: standard errors and intervals contain this factor
+  double quantile = 1.96;    ///< half width of a 95 % interval in standard errors: Student's t when scaled, else normal
+  Eigen::MatrixXd jacobian;  ///< d weighted residual / d ln(parameter), F_b last
+  Eigen::MatrixXd covariance;        ///< of the logarithms, as far as they are seen; contains error_scale^2
+  Eigen::VectorXd singular_values;   ///< of the Jacobian, falling; 1/s is the log error
   double condition = 0;              ///< largest over smallest of them; infinite when a combination is not seen
   Eigen::MatrixXd singular_vectors;  ///< right ones, one per column
   Eigen::MatrixXd correlation;       ///< NaN where a parameter is not seen at all

@@ -51,7 +51,8 @@ Eigen::RowVectorXd observations(const RunRecord& run) {
 
 Misfit::Misfit(const Job& job, const ParameterSpace& space) : space_(&space), edge_force_(job.edge_force) {
   const auto columns = static_cast<Eigen::Index>(observable_count);
-  measured_ = weights_ = errors_ = common_errors_ = Observations::Zero(rows(job.cuts), columns);
+  measured_ = weights_ = Observations::Zero(rows(job.cuts), columns);
+  errors_.fill(measured_);
   std::map<std::pair<std::string, Eigen::Index>, Common> commons;  // by specimen and kind of measurement
   for (Eigen::Index i = 0; i < rows(job.cuts); ++i) {
     const MeasuredCut& cut = job.cuts[static_cast<std::size_t>(i)];
@@ -59,16 +60,17 @@ Misfit::Misfit(const Job& job, const ParameterSpace& space) : space_(&space), ed
       const std::optional<Estimate>& measured = cut.measured[static_cast<std::size_t>(k)];
       if (!measured) continue;
       measured_(i, k) = measured->value;
-      errors_(i, k) = std::hypot(measured->standard_error, job.discrepancy * measured->value);
-      if (!(errors_(i, k) > 0))
+      error(ErrorSource::measurement)(i, k) = measured->standard_error;
+      error(ErrorSource::discrepancy)(i, k) = std::abs(job.discrepancy * measured->value);
+      weigh(i, k);
+      if (!std::isfinite(weights_(i, k)))
         throw InputError(
             fmt::format("{}:{}: {} has no standard error to weigh it by; add a column {}, or give [discrepancy] "
                         "relative in the job",
                         job.curves[cut.curve].name, cut.row, observable_names[static_cast<std::size_t>(k)],
                         error_columns[static_cast<std::size_t>(k)]));
-      weights_(i, k) = 1.0 / errors_(i, k);
       if (cut.specimen_error == 0) continue;
-      common_errors_(i, k) = cut.specimen_error * measured->value;
+      error(ErrorSource::specimen)(i, k) = cut.specimen_error * measured->value;
       commons[{cut.specimen, std::max(k, F_t)}].values.emplace_back(i, k);  // one dynamometer, one width: both forces
     }
   }
@@ -90,14 +92,23 @@ void Misfit::include_simulation_errors(const Evaluation& reference) {
     if (!reference.usable[static_cast<std::size_t>(i)]) continue;
     const auto simulated = simulation_errors(reference.runs[static_cast<std::size_t>(i)]);
     for (Eigen::Index k = 0; k < weights_.cols(); ++k) {
-      const double error = simulated[static_cast<std::size_t>(k)];
-      if (errors_(i, k) > 0 && std::isfinite(error)) weights_(i, k) = 1.0 / std::hypot(errors_(i, k), error);
+      if (weights_(i, k) == 0) continue;
+      if (const double own = simulated[static_cast<std::size_t>(k)]; std::isfinite(own)) {
+        error(ErrorSource::simulation)(i, k) = own;
+        weigh(i, k);
+      }
       // An error in common that followed the scatter of the measured values would pull the fit towards the low ones
       // (Peelle's puzzle): it is a share of what is simulated.
       const double value = reference.simulated(i, k);
-      if (common_errors_(i, k) != 0 && std::isfinite(value)) common_errors_(i, k) *= value / measured_(i, k);
+      if (double& common = error(ErrorSource::specimen)(i, k); common != 0 && std::isfinite(value))
+        common *= value / measured_(i, k);
     }
   }
+}
+
+void Misfit::weigh(Eigen::Index i, Eigen::Index k) {
+  const double known_before = std::hypot(error(ErrorSource::measurement)(i, k), error(ErrorSource::discrepancy)(i, k));
+  weights_(i, k) = 1.0 / std::hypot(known_before, error(ErrorSource::simulation)(i, k));
 }
 
 Misfit Misfit::with_share(CuttingShare share) const {
@@ -138,7 +149,7 @@ Residuals Misfit::residuals(const Observations& simulated, const Eigen::VectorXd
   result.standardised += result.edge_force * raw_edge;
   for (Eigen::Index i = 0; i < n; ++i)
     for (Eigen::Index k = 0; k < m; ++k)
-      result.standardised[i * m + k] /= std::hypot(1.0, common_errors_(i, k) * weights_(i, k));
+      result.standardised[i * m + k] /= std::hypot(1.0, error(ErrorSource::specimen)(i, k) * weights_(i, k));
   append_priors(point, result.weighted);
   result.compared += static_cast<int>(residual_count() - n * m);
   result.chi2 = result.weighted.squaredNorm();
@@ -169,6 +180,44 @@ Eigen::VectorXd Misfit::residuals_with(double edge_force, const Observations& si
   whiten(mask, residuals.data());
   append_priors(point, residuals);
   return residuals;
+}
+
+Observations Misfit::fitted(const Observations& simulated, const Eigen::VectorXd& point, double edge_force) const {
+  const double friction = space_->friction(point);
+  Observations result = simulated;
+  for (Eigen::Index k = 0; k < result.cols(); ++k)
+    result.col(k).array() += edge_force * edge_share(static_cast<Observable>(k), friction);
+  return result;
+}
+
+Observations Misfit::residual_errors() const {
+  Observations errors = Observations::Zero(weights_.rows(), weights_.cols());
+  for (Eigen::Index i = 0; i < errors.rows(); ++i)
+    for (Eigen::Index k = 0; k < errors.cols(); ++k)
+      if (weights_(i, k) != 0) errors(i, k) = std::hypot(1.0 / weights_(i, k), error(ErrorSource::specimen)(i, k));
+  return errors;
+}
+
+Eigen::MatrixXd Misfit::whitened_errors(ErrorSource source, const CutMask& mask) const {
+  const Eigen::Index n = residual_count(), priors = n - weights_.size();
+  if (source == ErrorSource::prior) {
+    Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(n, priors);
+    columns.bottomRows(priors).setIdentity();
+    return columns;
+  }
+  std::vector<Common> errors;  // the values that one of them moves
+  if (source == ErrorSource::specimen)
+    errors = commons_;
+  else
+    for (Eigen::Index i = 0; i < weights_.rows(); ++i)
+      for (Eigen::Index k = 0; k < weights_.cols(); ++k) errors.push_back({{{i, k}}});
+  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(errors.size()));
+  for (Eigen::Index c = 0; c < columns.cols(); ++c) {
+    for (const auto& [i, k] : errors[static_cast<std::size_t>(c)].values)
+      if (mask[static_cast<std::size_t>(i)]) columns(i * weights_.cols() + k, c) = error(source)(i, k) * weights_(i, k);
+    whiten(mask, columns.col(c).data());
+  }
+  return columns;
 }
 
 Residuals Misfit::residuals(const Evaluation& evaluation) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -13,6 +14,13 @@ namespace kerf::inverse {
 
 /// Observables of every cut: one row per cut, one column per Observable. Rows of unusable cuts hold anything.
 using Observations = Eigen::Matrix<double, Eigen::Dynamic, static_cast<int>(observable_count)>;
+
+/// What makes a measured value and a simulated one differ, as chi^2 weighs it. What a specimen shares is one error of
+/// all its cuts; every other value has its own.
+enum class ErrorSource : std::size_t { measurement, specimen, simulation, discrepancy, prior };
+inline constexpr std::size_t error_source_count = 5;
+inline constexpr std::array<const char*, error_source_count> error_source_names{"measurement", "specimen", "simulation",
+                                                                                "discrepancy", "prior"};
 
 /// Which cuts take part in a comparison.
 using CutMask = std::vector<bool>;
@@ -84,7 +92,7 @@ class Misfit {
       const auto each = [&](auto&& use) {
         for (const auto& [row, column] : common.values)
           if (mask[static_cast<std::size_t>(row)])
-            use(row * weights_.cols() + column, common_errors_(row, column) * weights_(row, column));
+            use(row * weights_.cols() + column, error(ErrorSource::specimen)(row, column) * weights_(row, column));
       };
       each([&](Eigen::Index i, double v) {
         along += v * residuals[i];
@@ -104,6 +112,15 @@ class Misfit {
       if (free[j].prior) *residuals++ = (values[j] - free[j].prior->value) / free[j].prior->standard_error;
   }
 
+  /// What is compared with the measurement: the simulation and what the edge force adds to it.
+  Observations fitted(const Observations& simulated, const Eigen::VectorXd& point, double edge_force) const;
+
+  /// The errors of one source as whitened residuals: a column for every independent error of one standard deviation.
+  /// With L_s these columns, sum_s L_s L_s^T is 1 on all that is compared.
+  Eigen::MatrixXd whitened_errors(ErrorSource source, const CutMask& mask) const;
+  /// Standard deviations of measured - simulated from all sources; 0 where nothing was measured.
+  Observations residual_errors() const;
+
   /// 1/s, without what a specimen shares; 0 where nothing was measured.
   const Observations& weights() const { return weights_; }
   const Observations& measured() const { return measured_; }
@@ -113,10 +130,14 @@ class Misfit {
 
  private:
   void append_priors(const Eigen::VectorXd& point, Eigen::VectorXd& residuals) const;
+  Observations& error(ErrorSource source) { return errors_[static_cast<std::size_t>(source)]; }
+  const Observations& error(ErrorSource source) const { return errors_[static_cast<std::size_t>(source)]; }
+  void weigh(Eigen::Index cut, Eigen::Index observable);
 
   const ParameterSpace* space_;
   std::optional<EdgeForce> edge_force_;
-  Observations measured_, weights_, errors_, common_errors_;
+  Observations measured_, weights_;
+  std::array<Observations, error_source_count> errors_;  ///< standard deviations by source; those of priors stay 0
   /// What shares one error: places (cut, observable).
   struct Common {
     std::vector<std::pair<Eigen::Index, Eigen::Index>> values;

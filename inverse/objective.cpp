@@ -80,6 +80,7 @@ void Objective::trace(std::string what, const Evaluation& at) {
   if (!best_ || better(*best_)) best_ = at;
   trace_.push_back({.what = std::move(what),
                     .runs = database_.runs(),
+                    .core_seconds = database_.core_seconds(),
                     .chi2 = residuals.chi2,
                     .point = at.point,
                     .edge_force = residuals.edge_force,

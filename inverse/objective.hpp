@@ -18,6 +18,7 @@ struct BudgetSpent {};
 struct TraceEntry {
   std::string what;  ///< "start", "differences", "trial accepted", ...
   std::size_t runs = 0;
+  double core_seconds = 0;  ///< of these runs
   double chi2 = 0;
   Eigen::VectorXd point;
   double edge_force = 0;

@@ -70,6 +70,12 @@ std::size_t RunDatabase::failed() const {
       std::count_if(asked_.begin(), asked_.end(), [&](const std::string& key) { return !known_.at(key).accepted; }));
 }
 
+double RunDatabase::core_seconds() const {
+  double sum = 0;
+  for (const std::string& key : asked_) sum += known_.at(key).core_seconds();
+  return sum;
+}
+
 std::optional<RunRecord> RunDatabase::find(const Document& scene) const {
   const auto found = known_.find(key(scene));
   return found == known_.end() ? std::nullopt : std::optional(found->second);

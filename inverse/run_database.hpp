@@ -66,6 +66,9 @@ class RunDatabase {
   std::size_t simulated() const { return simulated_; }
   std::size_t failed() const;
 
+  /// Processor time of all that was asked for, whenever and wherever it was simulated, s.
+  double core_seconds() const;
+
   /// The record of a run that has ended, now or before; nothing is simulated.
   std::optional<RunRecord> find(const Document& scene) const;
 

@@ -53,6 +53,11 @@ RunRecord summarise(const forward::CutResult& result) {
           .retried = {}};
 }
 
+double RunRecord::core_seconds() const {
+  const Json::json_pointer place("/cost/processor_s");
+  return result.contains(place) && result.at(place).is_number() ? result.at(place).get<double>() : 0;
+}
+
 RunRecord refused(std::string cause) {
   RunRecord record;
   record.refusals.push_back(std::move(cause));

@@ -28,6 +28,9 @@ struct RunRecord {
   nlohmann::ordered_json result;  ///< forward::result_json, for tables: all there is to show; null if it never ran
   std::string retried;            ///< what became of a first attempt, and what the second did otherwise; else empty
   bool lost = false;              ///< no attempt ended with a result: it crashed or hung
+
+  /// Processor time, s; 0 of a run that left no result.
+  double core_seconds() const;
 };
 
 RunRecord summarise(const forward::CutResult& result);

@@ -169,7 +169,8 @@ ExitCode finish(inverse::Folder& folder, const std::string& code, Show show, con
   if (!job.budget.shared_runs.empty()) database.share(job.budget.shared_runs);
   const inverse::Calibration calibration =
       inverse::calibrate(job, database, [&](const inverse::TraceEntry& entry) { lines.step(entry); });
-  inverse::CalibrationCost cost{.runs = database.runs(), .failed_runs = database.failed()};
+  inverse::CalibrationCost cost{
+      .runs = database.runs(), .failed_runs = database.failed(), .core_seconds = database.core_seconds()};
   if (!calibration.partial) {
     cost.record_runs = keep_cuts(folder, calibration, database, runs);
     fs::remove_all(scratch);
