@@ -5,9 +5,11 @@ import re
 
 from markupsafe import Markup
 
-from . import fit_figures
-from .calibration import label_of, measured_points, method_curves, simulated_curve, toughness_rows, with_labels
-from .cut_page import add_cut_figures, facts_of
+from . import fit_figures, uncertainty_figures
+from .calibration import (compared_observables, curve_groups, label_of, measured_points, method_curves, search_steps,
+                          sign_runs, simulated_curve, spending, toughness_rows, with_labels)
+from .calibration_methods import methods_paragraph
+from .cut_page import add_chip, add_force_history, add_ledger, facts_of
 from .page import (Page, chip, finite, html, integer, interval_text, large_unit, number, pretty_unit, prose, symbol,
                    with_error)
 
@@ -23,14 +25,18 @@ def page_of_calibration(calibration):
     page = Page(kicker="Kerf · calibration", title=result.get("title") or "Calibration", headline=_headline(result),
                 code_version=str(manifest.get("code_version") or manifest.get("version") or ""))
     _parameters(page, calibration)
-    _fit(page, calibration)
+    _data(page, calibration)
+    _residuals(page, result)
+    _profiles(page, result)
+    _directions(page, result)
+    _correlation(page, result)
+    _error_budget(page, result)
+    _edge(page, result)
     _intercepts(page, calibration)
-    _residuals(page, calibration)
-    _identifiability(page, calibration)
-    _edge(page, calibration)
     _cut(page, calibration)
-    _search(page, calibration)
+    _search(page, result)
     _cost(page, calibration)
+    _methods(page, calibration)
     add_manifest(page, calibration.manifest)
     return page
 
@@ -57,16 +63,24 @@ def _headline(result):
 
 def _parameters(page, calibration):
     result = calibration.result
-    section = page.section("What was measured")
+    section = page.section("What was measured" if result["parameters"] else "Where the search stood", "verdict",
+                           "verdict")
+    if result.get("partial"):
+        section.warnings([html("The search was stopped before its end; this is what was known by then. "
+                               "<code>kerf resume {}</code> goes on from there.", calibration.directory)])
+    if not result["parameters"]:
+        return _where_it_stopped(section, calibration)
     # With several assumptions on the edge only what holds under all of them may be claimed.
     either = any(p.get("interval_over_assumptions") for p in result["parameters"].values())
     key = "interval_over_assumptions" if either else "interval"
     rows = []
     for name, p in result["parameters"].items():
         rows.append([_name(name), _value(p), _interval(p, key), _track(p, key), _verdict(p.get("verdict"))])
-    heads = ["parameter", "estimate ± standard error",
+    for name, p in (result.get("derived") or {}).items():
+        rows.append([_name(name), _value(p), _interval(p, key), "", _verdict(p.get("verdict"))])
+    heads = ["parameter", html("estimate ±<br>standard error"),
              html("95 % interval,<br>both edge assumptions") if either else "95 % interval",
-             "within the search’s bounds", "verdict"]
+             html("within the<br>search’s bounds"), "verdict"]
     section.table(heads, rows, numeric=(1, 2))
     if finite(result.get("chi2")):
         section.text(html("Misfit {} = {} on {} degrees of freedom{}.", Markup("χ²"), number(result["chi2"]),
@@ -77,6 +91,20 @@ def _parameters(page, calibration):
     section.warnings(calibration.notes)
 
 
+def _where_it_stopped(section, calibration):
+    """A search without slopes has no errors: only where it stood."""
+    result = calibration.result
+    steps = search_steps(result)
+    point = result.get("stopped_at") or {name: {"value": value, "unit": "1"} for name, value in
+                                         (min(steps, key=lambda e: e["chi2"])["parameters"] if steps else {}).items()}
+    section.table(["parameter", "value"], [[_name(name), _value(p)] for name, p in point.items()],
+                  numeric=(1,))
+    if finite(result.get("chi2")):
+        section.text(html("Misfit there {} = {}; without slopes nothing can be said about errors.", Markup("χ²"),
+                          number(result["chi2"])))
+    section.warnings(calibration.notes)
+
+
 def _name(name):
     return html('<span style="white-space:nowrap">{} {}</span>', name.replace("_", " "), SYMBOLS.get(name, ""))
 
@@ -84,7 +112,7 @@ def _name(name):
 def _scale_remark(result):
     scale = result.get("error_scale")
     if finite(scale) and scale > 1.0001:
-        return f"; errors are widened by {number(scale)} because the model does not fit within the measured scatter"
+        return f"; errors are widened by {number(scale)}, the square root of the misfit per degree of freedom"
     return ""
 
 
@@ -128,82 +156,161 @@ def _verdict(verdict):
     return chip(text, kind)
 
 
-def _fit(page, calibration):
-    section = page.section("Measured points and fitted curves")
-    points = measured_points(calibration.result)
-    curves = method_curves(calibration.reduction) + ([simulated_curve(calibration.result)] if points else [])
-    picture = fit_figures.measured_and_fitted(points, curves) if points else None
-    if not picture:
+def _data(page, calibration):
+    result = calibration.result
+    section = page.section("Data and fitted curves", "data", "data")
+    groups, observables = curve_groups(result), compared_observables(result)
+    if not observables:
         section.missing("The result holds no measured cuts.")
         return
-    section.figure(picture, "Squares are measurements with their standard error. The simulation is drawn through the "
-                            "depths that were simulated; closed forms and extrapolations run on to zero depth, where "
-                            "they are read as a toughness.")
+    known = result.get("identifiability") or {}
+    scale = result.get("error_scale") or 1
+    banded = any(finite(cut[key].get("fitted_se")) for cut in result["cuts"] for key in observables
+                 if isinstance(cut.get(key), dict))
+    section.figure(fit_figures.data_and_bands(groups, observables, scale, known.get("interval_half_width_in_se") or 1.96),
+                   "The simulation at the estimate through the measured depths" +
+                   (", the 95 % band of its curve that the uncertain parameters leave (dark), and with the scatter, noise "
+                    "and stated model error of a measurement added (pale)." if banded else
+                    "; it has no bands without slopes, or in a result of an older version."))
     section.warnings([html("The cut at depth {} mm counts for nothing: {}.", number(cut["depth_mm"]),
                            prose("; ".join(cut.get("refusals") or ["it could not be compared"])))
-                      for cut in calibration.result["cuts"] if not cut.get("usable", True)])
-    if calibration.reduction is None:
-        section.missing("reduction.json is not there: closed forms and intercepts are left out.")
+                      for cut in result["cuts"] if not cut.get("usable", True)])
 
 
-def _intercepts(page, calibration):
-    section = page.section("Toughness, method by method")
-    rows = toughness_rows(calibration)
-    picture = fit_figures.intercept_comparison(rows)
-    if not picture:
-        section.missing("Neither the calibration nor a simple method estimates a toughness here.")
+def _residuals(page, result):
+    groups, observables = curve_groups(result), compared_observables(result)
+    observables = [key for key in observables if any(finite((cut.get(key) or {}).get("weighted_residual"))
+                                                     for cut in result["cuts"])]
+    if not observables:
         return
-    section.figure(picture, "Estimates with 95 % intervals; an arrow marks an interval that leaves the axis, a hollow "
-                            "dot a method that its own fit rejects or whose range it leaves. A straight line "
-                            "through forces overshoots: with friction the force approaches its intercept like the square "
-                            "root of the depth.")
-    reduction = calibration.reduction or {}
-    section.warnings([prose(with_labels(line)) for line in reduction.get("warnings", [])])
-    methods = reduction.get("methods") or {}
-    statements = {name: (method.get("verdict") or {}).get("statement", "") for name, method in methods.items()}
-    verdicts = [[html('<span style="white-space:nowrap">{}</span>', label_of(name)),
-                 html('<span class="why">{}</span>', prose(with_labels(statement)))]
-                for name, statement in statements.items()]
-    if verdicts:
-        section.table(["method", "what its fit says"], verdicts)
+    section = page.section("Residuals", "residuals", "residuals")
+    section.figure(fit_figures.residuals(groups, observables),
+                   "Measured minus fitted, over the standard deviation of the difference; 95 % of them should lie between "
+                   "the dashed lines.")
+    deepest = max(cut["depth_mm"] for cut in result["cuts"])
+    section.text(_about_runs(sign_runs(result), *((1e3, "µm") if deepest < 0.5 else (1, "mm"))))
 
 
-def _residuals(page, calibration):
-    section = page.section("Residuals")
-    points = measured_points(calibration.result)
-    picture = fit_figures.residuals(points) if points else None
-    if picture:
-        section.figure(picture, "Measured minus fitted, over the standard deviation of the difference; the band holds "
-                                "95 % of what scatter alone would give.")
-    else:
-        section.missing("The result holds no residuals.")
+def _about_runs(runs, factor, unit):
+    """The least likely run of equal signs in words, against what chance makes in any of the curves looked at."""
+    if not runs:
+        return "No curve has the three depths from which runs of equal signs could mean something."
+    worst = runs[0]
+    chance = 1 - (1 - worst["chance"]) ** len(runs)
+    if worst["length"] < 3:
+        return "No three neighbours in depth lie on the same side of the fit: there are no runs of equal signs."
+    told = html("{} measured {} in a row lie {} the fit ({} to {} {}, {}); chance alone makes such a run in {} % of such "
+                "data", worst["length"], symbol(*worst["observable"].split("_"))
+                if worst["observable"] in ("F_c", "F_t") else worst["observable"].replace("_", " "),
+                "above" if worst["above"] else "below", number(worst["depths"][0] * factor, digits=2),
+                number(worst["depths"][1] * factor, digits=2), unit, worst["curve"], number(100 * chance, digits=2))
+    if chance < 0.05:
+        return told + ": the model misses a trend with depth."
+    return html("No run of equal signs is longer than chance explains: at most {}.", told)
 
 
-def _identifiability(page, calibration):
-    section = page.section("What these cuts can tell apart")
-    seen = calibration.result.get("identifiability") or {}
+def _estimates(result):
+    return {**result["parameters"], **(result.get("derived") or {})}
+
+
+def _plain(name):
+    return PLAIN.get(name, name.replace("_", " "))
+
+
+def _titled(name):
+    return name.replace("_", " ") + (f" {PLAIN[name]}" if name in PLAIN else "")
+
+
+def _profiles(page, result):
+    scale = result.get("error_scale") or 1
+    quantile = (result.get("identifiability") or {}).get("interval_half_width_in_se") or 1.96
+    allowed = (quantile * scale) ** 2
+    estimates = [p | {"label": _titled(name), "measured": str(p.get("verdict", "")).startswith("measured"),
+                      "rise_per_se2": scale ** 2} for name, p in _estimates(result).items() if finite(p.get("value"))]
+    picture = finite(result.get("chi2")) and uncertainty_figures.profiles(estimates, result["chi2"], allowed)
+    if not picture:
+        return
+    section = page.section("Profiles of the misfit", "profiles", "profiles")
+    checked = any(finite((end or {}).get("chi2_simulated")) for p in estimates for end in p.get("ends") or ())
+    section.figure(picture, html(
+        "The least misfit with one quantity held and all others refitted on the linearised simulation; where it rises by {} "
+        "the 95 % interval (shaded) ends. Dashed: the parabola of the standard error, from which a profile that leans or "
+        "flattens departs.{}", number(allowed),
+        " Squares: ends of intervals that were simulated." if checked else ""))
+
+
+def _directions(page, result):
+    seen = result.get("identifiability") or {}
     values = seen.get("singular_values")
     if not values:
-        section.missing("No slopes were computed, so nothing is known about identifiability.")
         return
-    names = [PLAIN.get(name, name) for name in seen["names"]]
-    section.figure(fit_figures.identifiability(names, values, seen["singular_vectors"], seen.get("correlation")),
-                   "Directions of (logarithmic) parameter space, best known first. The inverse of a singular value is "
-                   "the relative error along its direction: below 2 (orange) the data do not determine it.")
-    weakest = len(values) - 1
-    if finite(values[weakest]) and values[weakest] > 0:
-        shares = sorted(zip(seen["names"], seen["singular_vectors"][weakest]), key=lambda pair: -abs(pair[1]))
-        makers = [SYMBOLS.get(name, name) for name, share in shares if abs(share) > 0.3][:2]
-        section.text(html("Least known is the direction of {}: a relative error of {} %.",
-                          html(" with ").join(makers), number(100 / values[weakest], digits=2)))
+    section = page.section("What these cuts can tell apart", "directions", "directions")
+    section.figure(uncertainty_figures.directions([_plain(name) for name in seen["names"]], values,
+                                                  seen["singular_vectors"]),
+                   "Directions of logarithmic parameter space, best known first, and their components. A singular value is "
+                   "the inverse of the relative error along its direction; below 2 (orange) the data do not determine it.")
+    if finite(values[-1]) and values[-1] > 0:
+        shares = sorted(zip(seen["names"], seen["singular_vectors"][-1]), key=lambda pair: -abs(pair[1] or 0))
+        makers = [SYMBOLS.get(name, name.replace("_", " ")) for name, share in shares if abs(share or 0) > 0.3][:2]
+        section.text(html("Least known is the direction of {} ({}). {}", html(" with ").join(makers),
+                          uncertainty_figures.known_to(values[-1]), _verdicts(result)))
 
 
-def _edge(page, calibration):
-    result = calibration.result
+def _verdicts(result):
+    """"Yield stress and friction: measured; toughness: bounded above and below." """
+    by_verdict = {}
+    for name, p in _estimates(result).items():
+        by_verdict.setdefault(p.get("verdict") or "not judged", []).append(name.replace("_", " "))
+    text = "; ".join(f"{', '.join(names)}: {verdict}" for verdict, names in by_verdict.items())
+    trades = [f"{name.replace('_', ' ')} with {p['trade_off']['with'].replace('_', ' ')} (known is {_plain(name)} × "
+              f"{_plain(p['trade_off']['with'])}^{number(p['trade_off']['exponent'], digits=2)}, to "
+              f"{number(100 * p['trade_off']['relative_error'], digits=2)} %)"
+              for name, p in _estimates(result).items() if p.get("trade_off")]
+    return f"In words: {text}." + (f" It trades off: {'; '.join(trades)}." if trades else "")
+
+
+def _correlation(page, result):
+    seen = result.get("identifiability") or {}
+    matrix = seen.get("correlation")
+    picture = uncertainty_figures.correlation([_plain(name) for name in seen["names"]], matrix) if matrix else None
+    if not picture:
+        return
+    section = page.section("Correlation of the estimates", "correlation", "correlation")
+    pairs = [(abs(matrix[i][j]), i, j) for i in range(len(matrix)) for j in range(i) if finite(matrix[i][j])]
+    words = "No pair of estimates is seen by these data."
+    if pairs:
+        _, i, j = max(pairs)
+        names = [SYMBOLS.get(seen["names"][k], seen["names"][k].replace("_", " ")) for k in (j, i)]
+        words = html("Strongest between {} and {}: {}. {}", *names, f"{matrix[i][j]:+.2f}".replace("-", "−"),
+                     "Beyond ±0.9 only a combination of both is known." if abs(matrix[i][j]) > 0.9 else
+                     "Nowhere beyond ±0.9, from where on only a combination of both would be known.")
+    section.figure(picture, words)
+
+
+def _error_budget(page, result):
+    budget = {name: shares for name, shares in (result.get("error_budget") or {}).items() if shares}
+    if not budget:
+        return
+    section = page.section("Where the errors come from", "budget", "error budget")
+    sources = uncertainty_figures.SOURCES
+    largest = [f"{_titled(name)}: {sources[source][0]} ({number(100 * share, digits=2)} %)"
+               for name, shares in budget.items() for source, share in [max(shares.items(), key=lambda pair: pair[1])]]
+    absent = [sources[source][0] for source in sources if all((shares.get(source) or 0) < 5e-4
+                                                              for shares in budget.values())]
+    section.figure(uncertainty_figures.error_budget([(_plain(name), shares) for name, shares in budget.items()]),
+                   prose("Each source's errors carried through the estimator, in per cent of the variance of every estimate. "
+                         "Largest for " + ", ".join(largest) + "." +
+                         (" Nothing from: " + ", ".join(absent) + "." if absent else "")))
+    section.text(html("Cell size, tool speed and damping shift all estimates together and scatter nothing, so they are no "
+                      "share of a variance: what is granted to them is the stated error of the model, and "
+                      "<code>kerf study JOB.toml</code> measures them."))
+
+
+def _edge(page, result):
     alternatives = result.get("alternatives") or []
     if not alternatives:
         return
-    section = page.section("With both assumptions on the edge force")
+    section = page.section("With both assumptions on the edge force", "edge", "edge force")
     section.text("How much of the force on the worn edge adds to the cutting force is not measured. What the fit says "
                  "under each assumption:")
     fits = [result] + alternatives
@@ -222,32 +329,66 @@ def _edge(page, calibration):
                   rows)
 
 
+def _intercepts(page, calibration):
+    section = page.section("Toughness, method by method", "toughness", "other methods")
+    rows = toughness_rows(calibration)
+    picture = fit_figures.intercept_comparison(rows)
+    if not picture:
+        section.missing("Neither the calibration nor a simple method estimates a toughness here.")
+        return
+    section.figure(picture, "Estimates with 95 % intervals; an arrow marks an interval that leaves the axis, a hollow "
+                            "dot a method that its own fit rejects or whose range it leaves. A straight line "
+                            "through forces overshoots: with friction the force approaches its intercept like the square "
+                            "root of the depth.")
+    reduction = calibration.reduction
+    if reduction is None:
+        section.missing("reduction.json is not there: closed forms and intercepts are left out.")
+        return
+    methods = reduction.get("methods") or {}
+    points, curves = measured_points(calibration.result), method_curves(reduction)
+    if points and curves:
+        overlay = fit_figures.measured_and_fitted(points, curves + [simulated_curve(calibration.result)])
+        section.fold("The fitted curves of all methods").figure(
+            overlay, "Closed forms and extrapolations run on to zero depth, where they are read as a toughness" +
+            ("; shown is the first of several rakes." if len(curve_groups(calibration.result)) > 1 else "."))
+    fold = section.fold("What their fits say")
+    fold.warnings([prose(with_labels(line)) for line in reduction.get("warnings", [])])
+    verdicts = [[html('<span style="white-space:nowrap">{}</span>', label_of(name)),
+                 html('<span class="why">{}</span>', prose(with_labels((method.get("verdict") or {}).get("statement", ""))))]
+                for name, method in methods.items()]
+    if verdicts:
+        fold.table(["method", "what its fit says"], verdicts)
+
+
 def _cut(page, calibration):
     if not calibration.cuts:
-        page.section("One of the cuts").missing("No simulated cut was kept in cuts/.")
         return
     cut = max(calibration.cuts, key=lambda candidate: (candidate.result["accepted"], candidate.tool["depth"]))
-    section = page.section("One of the cuts, as simulated at the estimate")
+    section = page.section("One of the cuts, as simulated at the estimate", "cut", "a cut")
+    section.warnings([prose(reason) for reason in cut.result["refusals"]])
+    add_chip(section, cut)
     section.text(html("Depth of cut {} mm, rake {}°; kept in cuts/{}, to be opened with ParaView through the .xdmf "
                       "beside it. The forces are those of the simulated, sharp tool, without an edge force.",
                       number(cut.tool["depth"]), number(math.degrees(cut.tool["rake"])), cut.path.name))
-    section.warnings([prose(reason) for reason in cut.result["refusals"]])
-    section.facts(facts_of(cut.result))
-    add_cut_figures(page, cut)
+    fold = section.fold("Its numbers, force history and energy ledger")
+    fold.facts(facts_of(cut.result))
+    add_force_history(fold, cut)
+    add_ledger(fold, cut)
 
 
-def _search(page, calibration):
-    section = page.section("How the search went")
-    entries = [e for e in calibration.result.get("trace", []) if finite(e.get("chi2"))]
-    if len(entries) < 2:
-        section.missing("The search left no trace of several steps.")
+def _search(page, result):
+    steps = search_steps(result)
+    if len(steps) < 2:
         return
-    names = [name for name in calibration.result["parameters"] if name in entries[0].get("parameters", {})]
-    for entry in entries:
-        entry["parameters"] = {PLAIN.get(name, name): value for name, value in entry["parameters"].items()}
-    section.figure(fit_figures.trace(entries, [PLAIN.get(name, name) for name in names]),
-                   html("{} steps. Start: {}.", len(entries), calibration.result.get("start_origin", "as the job says")))
-    audit = calibration.result.get("noise_audit")
+    section = page.section("How the search went", "search", "search")
+    names = [name for name in steps[-1]["parameters"] if name in result["parameters"] or not result["parameters"]]
+    taken = sum(step["kind"] == "accepted" and step["step"] != "start" for step in steps)
+    refused = sum(step["kind"] == "refused" for step in steps)
+    section.figure(fit_figures.trace(steps, [(name, _plain(name)) for name in names]),
+                   html("{} step{} taken (filled), {} not (hollow); it ended because {}. Start: {}.", taken,
+                        "" if taken == 1 else "s", refused, result.get("reason") or "nobody said why",
+                        result.get("start_origin", "as the job says").replace("_", " ")))
+    audit = result.get("noise_audit")
     if audit:
         section.text(html("Noise audit ({} runs): {}. Used: noise {}, step {}.", integer(audit["runs"]),
                           audit["note"], number(audit["used_noise"]), number(audit["used_step"])))
@@ -257,13 +398,28 @@ def _cost(page, calibration):
     result = calibration.result
     facts = [("simulated cuts", integer(result.get("runs")), ""),
              ("failed among them", integer(result.get("failed_runs")), ""),
-             ("wall time", _duration(result.get("wall_s")), "")]
+             ("core time", _duration(result.get("core_s")), "of all simulations"),
+             ("wall time", _duration(result.get("wall_s")), "over all sessions")]
     speeds = [cut.result["cost"]["particle_steps_per_s"] for cut in calibration.cuts]
     speeds = [speed for speed in speeds if finite(speed)]
     if speeds:
         mean = sum(speeds) / len(speeds)
         facts.append(("speed", f"{number(mean / 1e6)} million/s", "particle-steps per second and run"))
-    page.section("Cost").facts([fact for fact in facts if fact[1] != "–"])
+    section = page.section("Cost", "cost", "cost").facts([fact for fact in facts if fact[1] != "–"])
+    spent = spending(result)
+    if len(spent) > 1:
+        timed = all(finite(seconds) for _, _, seconds in spent)
+        section.table(["spent on", "simulated cuts"] + ["core-seconds"] * timed,
+                      [[what, integer(runs)] + [integer(seconds)] * timed for what, runs, seconds in spent],
+                      numeric=(1, 2))
+
+
+def _methods(page, calibration):
+    if calibration.manifest is None or not calibration.result["parameters"]:
+        return
+    section = page.section("Methods, to be pasted", "methods", "methods")
+    section.paste(prose(methods_paragraph(calibration)))
+    section.text("Made from result.json and manifest.json; one click selects all of it.")
 
 
 def _duration(seconds):
@@ -277,6 +433,7 @@ def add_manifest(page, manifest):
     if not manifest:
         section.missing("manifest.json is not there.")
         return
+    section = section.fold("versions, machine, inputs, scene")
     rows = []
 
     def flatten(value, path):

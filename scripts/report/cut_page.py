@@ -29,7 +29,9 @@ def page_of_cut(cut):
                       [[FACES.get(name, name.replace("_", " "))] +
                        [_bare(faces[f"{name}_{what}"]) for what in ("normal", "tangential", "contact_length")]
                        for name in names], numeric=(1, 2, 3))
-    add_cut_figures(page, cut)
+    add_force_history(page.section("Force along the cut"), cut)
+    add_chip(page.section("The chip"), cut)
+    add_ledger(page.section("Where the energy went"), cut)
 
     cost = result["cost"]
     page.section("Cost").facts([
@@ -42,9 +44,8 @@ def page_of_cut(cut):
     return page
 
 
-def add_cut_figures(page, cut):
-    """Force history, picture and ledger, each with a note in its place when the file has nothing to draw."""
-    section = page.section("Force along the cut")
+def add_force_history(section, cut):
+    """The figure, or a note in its place; so do the other two."""
     if len(cut.history["travel"]) > 1:
         section.figure(drawing.force_history(cut), html(
             "Means over whole cell crossings of the tool. Shaded: the part found steady, from which the dashed mean is "
@@ -52,7 +53,8 @@ def add_cut_figures(page, cut):
     else:
         section.missing("The run ended before the tool had crossed a cell.")
 
-    section = page.section("The chip")
+
+def add_chip(section, cut):
     picture = drawing.chip_picture(cut)
     if picture:
         section.figure(picture, "Particles at the last instant, coloured by equivalent plastic strain; the faces of "
@@ -60,7 +62,8 @@ def add_cut_figures(page, cut):
     else:
         section.missing("The file holds no particles.")
 
-    section = page.section("Where the energy went")
+
+def add_ledger(section, cut):
     ledger = drawing.energy_ledger(cut)
     if ledger:
         book = cut.result["ledger"]

@@ -1,4 +1,4 @@
-"""Figures that compare measurement, simulation and the simple methods, and say what the data can tell."""
+"""Figures that compare measurement, simulation and the simple methods, and the way to the fit."""
 
 import math
 
@@ -6,8 +6,8 @@ import numpy as np
 from matplotlib.ticker import MaxNLocator
 
 from .page import finite, interval_text, large_unit, number, pretty_unit
-from .style import (ACCENT, ACCENT_LIGHT, ACCENT_PALE, BALANCE, INK, QUIET, RULE, SAND, WARM, WARM_LIGHT, figure,
-                    light_grid, svg)
+from .style import (ACCENT, ACCENT_LIGHT, ACCENT_PALE, INK, QUIET, RULE, SAND, WARM, WARM_LIGHT, figure, light_grid,
+                    svg)
 
 OBSERVABLES = {"F_c": ("cutting force F_c", "N/m"), "F_t": ("transverse force F_t", "N/m"),
                "chip_ratio": ("chip thickness / depth", "1"), "chip_curvature": ("chip curvature", "1/mm")}
@@ -122,118 +122,183 @@ def intercept_comparison(rows):
     return svg(fig, "toughness by every method with its 95 percent interval")
 
 
-def residuals(points):
-    """(measured − fitted)/standard deviation for every observable.
+MARKERS = ["o", "s", "^", "D", "v", "P", "X", "<", ">"]
+SHADES = [ACCENT, WARM, INK, "#c2922e", "#4a78b5", "#8a5a83", "#7d8b2f", "#8d9aa0", "#3c4f76"]
 
-    points: [{"depth", "weighted": {"F_c": r, ...}}].
+
+def data_and_bands(groups, observables, scale, quantile):
+    """Measured values, the simulated curve through them and its 95 % bands: a row per curve, a panel per observable.
+
+    groups: [(label, [cut, ...] by depth)] as calibration.curve_groups gives them; scale: error_scale of the fit;
+    quantile: half width of a 95 % interval in standard errors.
     """
-    shown = [key for key in OBSERVABLES if any(finite(p["weighted"].get(key)) for p in points)]
-    if not shown:
-        return None
-    deepest = max(point["depth"] for point in points)
+    deepest = max(cut["depth_mm"] for _, cuts in groups for cut in cuts)
+    length, depth_unit = (1e3, "µm") if deepest < 0.5 else (1, "mm")
+    rows, columns = len(groups), len(observables)
+    height = 280 if rows == 1 else 195
+    fig, axes = figure(860 if columns > 1 else 600, height * rows + 45, rows + 1, columns, squeeze=False,
+                       height_ratios=[height] * rows + [30])
+    handles = {}
+    for line, (row, (label, cuts)) in enumerate(zip(axes, groups)):
+        for ax, key in zip(row, observables):
+            light_grid(ax)
+            factor, unit = large_unit(OBSERVABLES[key][1], [entry[key].get("measured") for _, all_cuts in groups
+                                                            for entry in all_cuts if isinstance(entry.get(key), dict)])
+            _band(ax, cuts, key, length, factor, scale, quantile, handles)
+            seen = [c for c in cuts if isinstance(c.get(key), dict) and finite(c[key].get("measured"))]
+            x = [c["depth_mm"] * length for c in seen]
+            y = [c[key]["measured"] * factor for c in seen]
+            handles["measured (± standard error)"] = ax.errorbar(
+                x, y, yerr=[(c[key].get("se") or 0) * factor for c in seen], fmt="s", color=INK, markersize=5.5,
+                capsize=3.5, elinewidth=1.2, zorder=4)
+            ax.xaxis.set_major_locator(MaxNLocator(5))
+            ax.yaxis.set_major_locator(MaxNLocator(5))
+            ax.margins(x=0.08)
+            if line == 0:
+                ax.set_title(OBSERVABLES[key][0] + (f", {pretty_unit(unit)}" if unit != "1" else ""))
+            if line == rows - 1:
+                ax.set_xlabel(f"depth of cut, {depth_unit}")
+        if rows > 1:
+            row[0].set_ylabel(label)
+    for ax in axes[rows]:
+        ax.axis("off")
+    axes[rows][0].legend(handles.values(), handles.keys(), loc="upper left", ncols=4, columnspacing=1.6,
+                         borderaxespad=0).set_in_layout(False)
+    return svg(fig, "measured values, simulated curves and their 95 percent bands")
+
+
+def _band(ax, cuts, key, length, factor, scale, quantile, handles):
+    """The fitted curve; dark what the parameters leave open, paler what a measurement there may scatter."""
+    known = {}
+    for cut in cuts:  # repeats at one depth are one simulation; the least scatter of them is kept
+        entry = cut.get(key)
+        if not cut.get("usable", True) or not isinstance(entry, dict) or not finite(entry.get("fitted")):
+            continue
+        scatter = entry.get("residual_sd")
+        x = cut["depth_mm"] * length
+        known[x] = (entry["fitted"], entry.get("fitted_se"),
+                    min(filter(finite, (scatter, known.get(x, (0, 0, None))[2])), default=None))
+    if not known:
+        return
+    x = np.array(sorted(known))
+    value, own, scatter = (np.array([np.nan if known[d][k] is None else known[d][k] for d in sorted(known)], dtype=float)
+                           * factor for k in range(3))
+    if len(x) == 1:  # a depth alone shows its band as a bar
+        x, value, own, scatter = x[0] * np.array([0.97, 1.03]), *(np.repeat(v, 2) for v in (value, own, scatter))
+    inner, outer = quantile * own, quantile * np.hypot(own, scale * scatter)
+    if np.isfinite(outer).any():
+        handles["95 % of measurements"] = ax.fill_between(x, value - outer, value + outer, color=ACCENT_PALE,
+                                                          linewidth=0, zorder=1)
+    if np.isfinite(inner).any():
+        handles["95 % of the curve"] = ax.fill_between(x, value - inner, value + inner, color=ACCENT_LIGHT, alpha=0.75,
+                                                       linewidth=0, zorder=2)
+    handles["simulation"] = ax.plot(x, value, "-o", color=ACCENT, markersize=4, linewidth=2, zorder=3)[0]
+
+
+def residuals(groups, observables):
+    """(measured − fitted)/standard deviation against depth, and against rake where there are several.
+
+    groups: [(label, [cut, ...])], told apart by their markers.
+    """
+    cuts = [cut for _, all_cuts in groups for cut in all_cuts]
+    deepest = max(cut["depth_mm"] for cut in cuts)
     length, unit = (1e3, "µm") if deepest < 0.5 else (1, "mm")
-    fig, axes = figure(860, 235, 1, len(shown), squeeze=False, sharey=True)
-    largest = max(abs(p["weighted"][key]) for p in points for key in shown if finite(p["weighted"].get(key)))
-    for ax, key in zip(axes[0], shown):
-        light_grid(ax)
-        ax.axhspan(-2, 2, color=ACCENT_PALE, linewidth=0, zorder=0)
-        ax.axhline(0, color=QUIET, linewidth=0.8)
-        for p in points:
-            r = p["weighted"].get(key)
-            if not finite(r):
-                continue
-            x, colour = p["depth"] * length, ACCENT if abs(r) <= 2 else WARM
-            ax.plot([x, x], [0, r], color=colour, linewidth=1.4)
-            ax.plot([x], [r], "o", color=colour, markersize=6.5)
-        ax.set_xlim(0, deepest * length * 1.1)
-        ax.set_ylim(-max(3, 1.2 * largest), max(3, 1.2 * largest))
-        ax.set_title(OBSERVABLES[key][0])
-        ax.set_xlabel(f"depth of cut, {unit}")
-        ax.xaxis.set_major_locator(MaxNLocator(5))
-    axes[0][0].set_ylabel("residual / its sd")
-    return svg(fig, "weighted residuals of every observable")
-
-
-def identifiability(names, singular_values, vectors, correlation):
-    """Left: directions in parameter space from best to worst known. Right: correlation of the estimates."""
-    count = len(singular_values)
-    has_correlation = correlation is not None
-    fig, axes = figure(860, max(250, 60 + 58 * count), 1, 3 if has_correlation else 2, squeeze=False,
-                       width_ratios=[1, 1.7, 1.5] if has_correlation else [1, 1.7])
-    left, middle = axes[0][0], axes[0][1]
-    rows = -np.arange(count)
-    values = np.nan_to_num(np.array(singular_values, dtype=float))
-    vectors = np.array(vectors, dtype=float)
-    left.barh(rows, values, color=[ACCENT if v > 2 else WARM for v in values], height=0.5)
-    left.set_xscale("log")
-    left.set_xlim(min(0.5, values[values > 0].min() / 2 if (values > 0).any() else 0.5), values.max() * 6)
-    for y, v in zip(rows, values):
-        left.annotate(number(v, digits=2), (max(v, left.get_xlim()[0]), y), xytext=(6, 0), textcoords="offset points",
-                      va="center", fontsize=11.5)
-    left.set_yticks(rows, [f"{k + 1}" for k in range(count)])
-    left.tick_params(axis="y", length=0)
-    left.set_title("singular value")
-    left.set_ylabel("direction")
-
-    middle.set_title("what that direction is made of")
-    width = 1.0 / (len(names) + 1)
-    shades = [ACCENT, WARM, ACCENT_LIGHT, SAND, INK, WARM_LIGHT]
-    for j, name in enumerate(names):
-        offset = (0.5 * (len(names) - 1) - j) * width
-        middle.barh(rows + offset, [vectors[k][j] for k in range(count)], height=width * 0.9, label=name,
-                    color=shades[j % len(shades)])
-    middle.axvline(0, color=QUIET, linewidth=0.8)
-    middle.set_xlim(-1.05, 1.05)
-    middle.set_xticks([-1, -0.5, 0, 0.5, 1])
-    middle.set_yticks([])
-    middle.spines["left"].set_visible(False)
-    middle.legend(loc="upper center", bbox_to_anchor=(0.5, -0.1), ncols=2, handlelength=1, columnspacing=1.2)
-
-    if has_correlation:
-        right = axes[0][2]
-        matrix = np.array(correlation, dtype=float)
-        size = len(matrix)
-        below = np.where(np.tri(size, k=-1, dtype=bool), matrix, np.nan)[1:, :-1]
-        right.imshow(below, cmap=BALANCE, vmin=-1, vmax=1)
-        for (i, j), r in np.ndenumerate(below):
-            if np.isfinite(r):
-                right.text(j, i, f"{r:.2f}".replace("-", "−"), ha="center", va="center", fontsize=11,
-                           color="white" if abs(r) > 0.7 else INK)
-        right.set_title("correlation of the estimates")
-        right.set_xticks(range(size - 1), names[:-1])
-        right.set_yticks(range(size - 1), names[1:])
-        right.tick_params(length=0)
-        for spine in right.spines.values():
-            spine.set_visible(False)
-    return svg(fig, "singular values, singular vectors and correlation of the estimates")
+    against = [("depth of cut, " + unit, lambda cut: cut["depth_mm"] * length)]
+    if len({round(cut.get("rake_deg") or 0, 3) for cut in cuts}) > 1:
+        against.append(("rake angle, degrees", lambda cut: cut.get("rake_deg")))
+    rows, several = len(against), len(groups) > 1
+    legend_rows = math.ceil(len(groups) / 4) if several else 0
+    fig, axes = figure(860 if len(observables) > 1 else 480, 215 * rows + 24 * legend_rows, rows + several,
+                       len(observables), squeeze=False, sharey="row",
+                       height_ratios=[215] * rows + [24 * legend_rows] * several)
+    found = [cut[key]["weighted_residual"] for cut in cuts for key in observables
+             if isinstance(cut.get(key), dict) and finite(cut[key].get("weighted_residual"))]
+    reach = max(3, 1.2 * max(map(abs, found)))
+    handles = {}
+    for line, (row, (axis, place)) in enumerate(zip(axes, against)):
+        for ax, key in zip(row, observables):
+            light_grid(ax)
+            ax.axhspan(-2, 2, color=ACCENT_PALE, linewidth=0, zorder=0)
+            for at in (-2, 0, 2):
+                ax.axhline(at, color=QUIET, linewidth=0.8, linestyle="-" if at == 0 else (0, (4, 3)))
+            for k, (label, mine) in enumerate(groups):
+                pairs = [(place(cut), cut[key]["weighted_residual"]) for cut in mine
+                         if isinstance(cut.get(key), dict) and finite(cut[key].get("weighted_residual"))]
+                if not pairs:
+                    continue
+                x, r = zip(*pairs)
+                colour = SHADES[k % len(SHADES)]
+                ax.vlines(x, 0, r, color=colour, linewidth=1, alpha=0.6)
+                handles[label] = ax.plot(x, r, MARKERS[k % len(MARKERS)], color=colour, markersize=6.5)[0]
+            ax.set_ylim(-reach, reach)
+            ax.margins(x=0.08)
+            ax.set_xlabel(axis)
+            if axis.startswith("rake"):
+                ax.set_xticks(sorted({cut["rake_deg"] for cut in cuts})[:12])
+                ax.xaxis.set_major_formatter("{x:g}")
+            else:
+                ax.xaxis.set_major_locator(MaxNLocator(5))
+            if line == 0:
+                ax.set_title(OBSERVABLES[key][0])
+        row[0].set_ylabel("residual / its sd")
+    if several:
+        for ax in axes[rows]:
+            ax.axis("off")
+        axes[rows][0].legend(handles.values(), handles.keys(), loc="upper left", ncols=4, columnspacing=1.6,
+                             handlelength=1, borderaxespad=0).set_in_layout(False)
+    return svg(fig, "normalised residuals against depth and rake")
 
 
 def trace(entries, names):
-    """Misfit against simulations spent, and the parameters relative to where they ended."""
-    runs = np.array([entry["runs"] for entry in entries], dtype=float)
-    chi2 = np.array([entry["chi2"] if finite(entry["chi2"]) else np.nan for entry in entries])
-    fig, (left, right) = figure(860, 290, 1, 2)
+    """Misfit against what was spent, and the parameters relative to where they ended.
+
+    entries: [{"spent", "chi2", "kind", "fidelity", "parameters"}] with kind "accepted", "refused" or "differences" and
+    fidelity "fine", "coarse" or "other" (another edge assumption); names: [(name, how it is written)].
+    """
+    fig, (left, right) = figure(860, 300, 1, 2)
+    looks = {"fine": (ACCENT, "o", ""), "coarse": (ACCENT_LIGHT, "s", "coarse, "), "other": (SAND, "D", "other edge, ")}
+    main = [e for e in entries if e["fidelity"] != "other"]
     light_grid(left)
-    best = np.fmin.accumulate(chi2)
-    left.plot(runs, chi2, "o", color=ACCENT_LIGHT, markersize=5, label="tried")
-    left.step(runs, best, where="post", color=ACCENT, label="best so far")
-    if np.nanmax(chi2) > 30 * np.nanmin(chi2):
+    for fidelity, (colour, marker, prefix) in looks.items():
+        mine = [e for e in entries if e["fidelity"] == fidelity]
+        taken = [e for e in mine if e["kind"] == "accepted"]
+        refused = [e for e in mine if e["kind"] == "refused"]
+        if taken:
+            left.step([e["spent"] for e in taken] + [mine[-1]["spent"]], [e["chi2"] for e in taken] + [taken[-1]["chi2"]],
+                      where="post", color=colour, linewidth=1.5)
+            left.plot([e["spent"] for e in taken], [e["chi2"] for e in taken], marker, color=colour, markersize=6,
+                      label=prefix + "accepted")
+        if refused:
+            left.plot([e["spent"] for e in refused], [e["chi2"] for e in refused], marker, color=colour, markersize=6,
+                      markerfacecolor="white", label=prefix + "not taken")
+    values = [e["chi2"] for e in entries]
+    if max(values) > 10 * min(values) > 0:
         left.set_yscale("log")
+    differenced = [e["spent"] for e in entries if e["kind"] == "differences"]
+    if differenced:
+        left.plot(differenced, [0.02] * len(differenced), "|", color=QUIET, markersize=9, label="differences taken",
+                  transform=left.get_xaxis_transform())
     left.set_title("misfit χ²")
-    left.set_xlabel("simulations")
-    left.legend()
+    left.legend(fontsize=10.5)
 
     light_grid(right)
-    shades = [ACCENT, WARM, ACCENT_LIGHT, SAND, INK, WARM_LIGHT]
-    end = entries[int(np.nanargmin(chi2))]["parameters"]
-    for j, name in enumerate(names):
-        path = [entry["parameters"].get(name) for entry in entries]
-        if not all(map(finite, path)) or not finite(end.get(name)) or end[name] == 0:
+    path = [e for e in main if e["kind"] == "accepted"]
+    end = path[-1]["parameters"] if path else {}
+    for j, (name, written) in enumerate(names):
+        if not finite(end.get(name)) or end[name] == 0 or not all(finite(e["parameters"].get(name)) for e in main):
             continue
-        right.plot(runs, np.array(path) / end[name], "-o", markersize=3.5, linewidth=1.5, color=shades[j % len(shades)],
-                   label=name)
-    right.axhline(1, color=QUIET, linewidth=0.8)
-    right.set_title("parameters, relative to the best point")
-    right.set_xlabel("simulations")
-    right.legend(ncols=2)
+        colour = SHADES[j % len(SHADES)]
+        right.step([e["spent"] for e in path] + [main[-1]["spent"]],
+                   [e["parameters"][name] / end[name] for e in path] + [1], where="post", linewidth=1.5, color=colour)
+        right.plot([e["spent"] for e in path], [e["parameters"][name] / end[name] for e in path],
+                   MARKERS[j % len(MARKERS)], color=colour, markersize=5, label=written)
+        refused = [e for e in main if e["kind"] == "refused"]
+        right.plot([e["spent"] for e in refused], [e["parameters"][name] / end[name] for e in refused],
+                   MARKERS[j % len(MARKERS)], color=colour, markersize=5, markerfacecolor="white")
+    right.axhline(1, color=QUIET, linewidth=0.8, zorder=0)
+    right.set_title("parameters, relative to where they ended")
+    right.legend(ncols=2, fontsize=10.5)
+    for ax in (left, right):
+        ax.set_xlabel(entries[0]["unit"])
+        ax.set_xlim(left=0)
     return svg(fig, "misfit and parameters along the search")

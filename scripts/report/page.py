@@ -15,6 +15,8 @@ from . import style
 class Section:
     title: str
     parts: list = field(default_factory=list)
+    anchor: str = ""
+    short: str = ""  # its name in the list of contents
 
     def text(self, body):
         return self._add("text", body)
@@ -38,6 +40,16 @@ class Section:
     def source(self, summary, text):
         return self._add("source", {"summary": summary, "text": text})
 
+    def paste(self, text):
+        """A paragraph that one click selects as a whole."""
+        return self._add("paste", text)
+
+    def fold(self, summary):
+        """Parts that stay folded until they are asked for: fill what is returned."""
+        inside = Section(summary)
+        self._add("fold", inside)
+        return inside
+
     def _add(self, kind, body):
         self.parts.append({"kind": kind, "body": body})
         return self
@@ -51,8 +63,8 @@ class Page:
     code_version: str
     sections: list = field(default_factory=list)
 
-    def section(self, title):
-        self.sections.append(Section(title))
+    def section(self, title, anchor="", short=""):
+        self.sections.append(Section(title, anchor=anchor, short=short))
         return self.sections[-1]
 
     def html(self):

@@ -44,6 +44,10 @@ Json sample_result() {
   result["alternatives"] = Json::array({other});
   result["trace"] = {{{"runs", 3}, {"chi2", 60.0}, {"parameters", {{"yield_stress", 1300}, {"toughness", 9000}}}},
                      {{"runs", 9}, {"chi2", 8.8}, {"parameters", {{"yield_stress", 1052}, {"toughness", 13900}}}}};
+  result["error_budget"] = {{"yield_stress", {{"measurement", 0.625}, {"discrepancy", 0.375}}}, {"friction", nullptr}};
+  result["parameters"]["toughness"]["profile"] = {{"value", {7000, 13900, 27000}}, {"chi2", {13.0, 8.8, 14.0}}};
+  result["method"] = "gauss_newton";
+  result["core_s"] = 371.0;
   result["runs"] = 42;
   result["wall_s"] = 203.4;
   return result;
@@ -126,8 +130,46 @@ TEST_F(Report, TellsACalibrationInOneSelfContainedPage) {
        {std::string("1") + thin + "052 ± 38 MPa", std::string("13") + thin + "900 ± 5" + thin + "400 J/m²",
         std::string("0.391 ± 0.021"), std::string("0.350 … 0.433")})
     EXPECT_THAT(html, HasSubstr(value));
-  // Fit, intercepts, residuals, identifiability, trace; force history, chip and ledger of the cut.
-  EXPECT_EQ(count(html, "<svg "), 8U);
+  // Data, residuals, profiles, directions, correlation, error budget, intercepts and their curves, trace; force
+  // history, chip and ledger of the cut.
+  EXPECT_EQ(count(html, "<svg "), 12U);
+}
+
+TEST_F(Report, HasANumberInEverySection) {
+  put("result.json", sample_result());
+  put("reduction.json", sample_reduction());
+  put("manifest.json", {{"version", "0.1.0"}, {"scene", "resolution = {cells_through_chip = 6.0}\n"}, {"job", ""}});
+  ASSERT_EQ(report().exit_code, 0);
+  const std::string html = content_of(folder_ / "run" / "report.html");
+  const std::vector<std::pair<std::string, std::string>> sections{
+      {"verdict", "8.80"},         {"data", "180"},
+      {"residuals", "3 measured"}, {"profiles", "rises by 3.84"},
+      {"directions", "12: 8.3 %"}, {"correlation", "−0.80"},
+      {"budget", "62 %"},          {"edge", "9.40"},
+      {"toughness", "33.3"},       {"search", "0 not (hollow)"},
+      {"cost", "6.2 min"},         {"methods", "6 cells through the depth of cut"}};
+  for (const auto& [anchor, number] : sections) {
+    const std::size_t begin = html.find("<section id=\"" + anchor + "\">");
+    ASSERT_NE(begin, std::string::npos) << anchor;
+    EXPECT_THAT(html.substr(begin, html.find("</section>", begin) - begin), HasSubstr(number)) << anchor;
+  }
+}
+
+TEST_F(Report, ShowsWhereAStoppedSearchStood) {
+  Json result = sample_result();
+  result["parameters"] = Json::object();
+  result["identifiability"] = {{"names", Json::array()}, {"singular_values", Json::array()}};
+  result["partial"] = true;
+  result["stopped_at"] = {{"yield_stress", {{"value", 1350}, {"unit", "MPa"}}}};
+  result.erase("error_budget");
+  result["alternatives"] = Json::array();
+  put("result.json", result);
+  const ProcessOutput run = report();
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const std::string html = content_of(folder_ / "run" / "report.html");
+  EXPECT_THAT(html, HasSubstr("Where the search stood"));
+  EXPECT_THAT(html, HasSubstr(std::string("1") + "\u202f" + "350 MPa"));
+  EXPECT_EQ(html.find("id=\"profiles\""), std::string::npos);
 }
 
 TEST_F(Report, LeavesOutWhatIsMissingWithANote) {
