@@ -17,7 +17,7 @@ struct Segment {
   double begin_x, begin_y, end_x, end_y;
 };
 
-std::optional<Segment> common_edge(const BodyPlan& a, const BodyPlan& b) {
+std::optional<Segment> common_edge(const Shape& a, const Shape& b) {
   const auto same = [](double p, double q) { return std::abs(p - q) <= 1e-9 * (std::abs(p) + std::abs(q)); };
   const double bottom = std::max(a.bottom, b.bottom), top = std::min(a.bottom + a.height, b.bottom + b.height);
   const double left = std::max(a.left, b.left), right = std::min(a.left + a.width, b.left + b.width);
@@ -39,7 +39,7 @@ Joint::Joint(const State& state, const Scene& scene) : springs_(scene.interface)
     smallest_mass_ = std::min(smallest_mass_, std::visit([](const auto& law) { return law.mass_density(); }, body.law));
   smallest_mass_ *= 1e-12 * grid.cell_x * grid.cell_y;
   if (!springs_) return;
-  const std::optional<Segment> edge = common_edge(scene.bodies[0], scene.bodies[1]);
+  const std::optional<Segment> edge = common_edge(scene.bodies[0].shape, scene.bodies[1].shape);
   if (!edge)
     throw InputError(
         fmt::format("{}: this [[body]] has no edge in common with the other, where the [interface] could be",

@@ -158,7 +158,7 @@ void modulus(const BodiesResult& result, const Scene& scene, Json& json) {
   json["effective_modulus"] = stress / strain;
   const bool held = scene.walls[top] == Wall::roller && scene.walls[bottom] == Wall::roller;
   double compliance = 0;
-  for (const BodyPlan& body : scene.bodies) compliance += body.width / scene.length / bar_modulus(body.law, held);
+  for (const BodyPlan& body : scene.bodies) compliance += body.shape.width / scene.length / bar_modulus(body.law, held);
   json["perfect_modulus"] = 1.0 / compliance;
   if (scene.interface) {
     const double D = strain < 0.0 ? scene.interface->compressive : scene.interface->normal;
@@ -167,6 +167,23 @@ void modulus(const BodiesResult& result, const Scene& scene, Json& json) {
   }
   json["closed_form_modulus"] = 1.0 / compliance;
   json["effective_modulus_error"] = std::abs(stress / strain * compliance - 1.0);
+}
+
+void sliding(const BodiesResult& result, const Scene& scene, Json& json) {
+  if (!scene.gravity || scene.rigids.empty()) return;
+  const double c = std::cos(scene.rigids[0].shape.angle), s = std::sin(scene.rigids[0].shape.angle);
+  const double along = c * scene.gravity->x + s * scene.gravity->y;
+  const double press = s * scene.gravity->x - c * scene.gravity->y;
+  const double mu = scene.contact->friction;
+  const double expected = std::copysign(std::max(0.0, std::abs(along) - mu * std::max(press, 0.0)), along);
+  const Span span = span_of(result, scene.strokes.size() - 1);
+  const Reading &from = result.history[(span.first + span.last) / 2], &to = result.history[span.last];
+  const double found =
+      (c * (to.velocity_x - from.velocity_x) + s * (to.velocity_y - from.velocity_y)) / (to.time - from.time);
+  const double g = std::hypot(scene.gravity->x, scene.gravity->y);
+  json["acceleration"] = found / 1e3;
+  json["closed_form_acceleration"] = expected / 1e3;
+  json["acceleration_error"] = std::abs(found - expected) / g;
 }
 
 }  // namespace
@@ -185,6 +202,9 @@ Json measure(const BodiesResult& result, const Scene& scene) {
         break;
       case Measure::modulus:
         modulus(result, scene, json);
+        break;
+      case Measure::sliding:
+        sliding(result, scene, json);
         break;
     }
   return json;

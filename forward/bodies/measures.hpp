@@ -13,6 +13,9 @@ namespace kerf::forward::bodies {
 /// - rubber: of one ideal rubber, stroke 1 isothermal: heat_over_work, heat given off over work taken in (1: dq = -dw);
 ///   first adiabatic stroke: adiabatic_temperature_error against T exp((w - w_0)/(c T_0)) of an incompressible strip,
 ///   and adiabatic_over_isothermal_modulus, chords over its second half, with the closed form beside it
+/// - sliding: acceleration (m/s^2) of the bodies' centre of mass along the lower side of the first rigid body over the
+///   second half of the last stroke, that of a block on an incline, g (sin a - mu cos a), and acceleration_error, their
+///   difference over g
 /// - modulus: effective_modulus along x of what lies in the box, and effective_modulus_error against bodies and
 ///   interface in series, 1/E = sum (l_i/L)/E_i + 1/(D_n L)
 nlohmann::ordered_json measure(const BodiesResult& result, const Scene& scene);

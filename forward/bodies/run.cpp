@@ -49,10 +49,15 @@ class StrokeEnd {
 
 class Recorder {
  public:
-  explicit Recorder(const State& state) : first_(totals(state)), last_length_(state.piston.position) {}
+  Recorder(const State& state, const Scene& scene)
+      : first_(totals(state)), gravity_(scene.gravity.value_or(Place{0, 0})), last_length_(state.piston.position) {}
 
   void add_step(const State& state) {
     impulse_ += state.piston.force * state.step;
+    if (!state.contact.rigids.empty()) {
+      rigid_impulse_.x += state.contact.rigids[0].force_x * state.step;
+      rigid_impulse_.y += state.contact.rigids[0].force_y * state.step;
+    }
     duration_ += state.step;
   }
   bool is_due(const State& state, double spacing) const {
@@ -60,37 +65,65 @@ class Recorder {
   }
   void read(const State& state, std::size_t stroke, std::vector<Reading>& history) {
     const Totals now = totals(state);
-    history.push_back({.stroke = stroke,
-                       .time = state.time,
-                       .length = state.piston.position,
-                       .force = duration_ > 0.0 ? impulse_ / duration_ : 0.0,
-                       .temperature = now.temperature,
-                       .stress_xx = now.stress_xx,
-                       .stress_yy = now.stress_yy,
-                       .piston_work = state.piston.work,
-                       .heat = state.bath.heat,
-                       .bath_entropy = state.bath.entropy,
-                       .entropy = now.entropy - first_.entropy,
-                       .internal = now.internal - first_.internal,
-                       .kinetic = now.kinetic,
-                       .damping = state.damping,
-                       .interface = state.interface_energy});
+    history.push_back(
+        {.stroke = stroke,
+         .time = state.time,
+         .length = state.piston.position,
+         .force = duration_ > 0.0 ? impulse_ / duration_ : 0.0,
+         .temperature = now.temperature,
+         .stress_xx = now.stress_xx,
+         .stress_yy = now.stress_yy,
+         .piston_work = state.piston.work,
+         .heat = state.bath.heat,
+         .bath_entropy = state.bath.entropy,
+         .entropy = now.entropy - first_.entropy,
+         .internal = now.internal - first_.internal,
+         .kinetic = now.kinetic,
+         .damping = state.damping,
+         .interface = state.interface_energy,
+         .start_kinetic = first_.kinetic,
+         .gravity_work = gravity_.x * (now.moment_x - first_.moment_x) + gravity_.y * (now.moment_y - first_.moment_y),
+         .rigid_work = state.contact.rigid_work,
+         .friction_heat = state.contact.friction_heat,
+         .impact = state.contact.impact,
+         .velocity_x = now.momentum_x / now.mass,
+         .velocity_y = now.momentum_y / now.mass,
+         .rigid_force_x = duration_ > 0.0 ? rigid_impulse_.x / duration_ : 0.0,
+         .rigid_force_y = duration_ > 0.0 ? rigid_impulse_.y / duration_ : 0.0});
     last_length_ = state.piston.position;
     impulse_ = duration_ = 0.0;
+    rigid_impulse_ = {0, 0};
   }
   const Totals& first() const { return first_; }
 
  private:
   Totals first_;
+  Place gravity_;
+  Place rigid_impulse_{0, 0};
   double last_length_, impulse_ = 0, duration_ = 0;
 };
+
+std::vector<BodiesResult::Pressure> pressed_nodes(const State& state) {
+  std::vector<BodiesResult::Pressure> nodes;
+  const ContactState::Pressed& pressed = state.contact.pressed;
+  const Grid& grid = state.grid;
+  if (pressed.impulse.empty() || !(state.time > pressed.since)) return nodes;
+  for (int j = 0; j < grid.rows; ++j)
+    for (int i = 0; i < grid.columns; ++i)
+      if (const double impulse = pressed.impulse[grid.node(i, j)]; impulse != 0.0)
+        nodes.push_back({.x = grid.origin_x + i * grid.cell_x,
+                         .y = grid.origin_y + j * grid.cell_y,
+                         .force = impulse / (state.time - pressed.since)});
+  return nodes;
+}
 
 /// Refuses what no reading should be taken from.
 void judge(BodiesResult& result, const Scene& scene) {
   if (result.history.empty()) return;
   double largest = 0.0, most_kinetic = 0.0;
   for (const Reading& r : result.history) {
-    largest = std::max({largest, std::abs(r.piston_work), std::abs(r.heat), std::abs(r.internal)});
+    largest = std::max({largest, std::abs(r.piston_work), std::abs(r.heat), std::abs(r.internal),
+                        std::abs(r.gravity_work), std::abs(r.rigid_work), r.start_kinetic});
     most_kinetic = std::max(most_kinetic, r.kinetic);
   }
   constexpr double most_residue = 0.01, most_moving = 0.05;
@@ -98,7 +131,8 @@ void judge(BodiesResult& result, const Scene& scene) {
   if (!(residue <= most_residue * largest))
     result.refusals.push_back(fmt::format("the energy ledger leaves {:.2g} % open (allowed {:.0f} %)",
                                           100 * residue / largest, 100 * most_residue));
-  if (!(most_kinetic <= most_moving * largest))
+  // Bodies that meet and part may move.
+  if (!scene.contact && !(most_kinetic <= most_moving * largest))
     result.refusals.push_back(
         fmt::format("kinetic energy reaches {:.2g} % of the largest (allowed {:.0f} %): move the "
                     "piston more slowly or damp",
@@ -114,7 +148,7 @@ BodiesResult run(const Scene& scene, const std::function<bool(std::size_t, doubl
   State state = lay_out(scene);
   Joint joint(state, scene);
   const std::vector<Stage> stages = plan(scene, joint);
-  Recorder recorder(state);
+  Recorder recorder(state, scene);
   for (const Body& body : state.bodies) result.particles += body.points.size();
   const double spacing = scene.length / readings_per_length;
   const double start_temperature = recorder.first().temperature;
@@ -126,7 +160,11 @@ BodiesResult run(const Scene& scene, const std::function<bool(std::size_t, doubl
     // A stroke that only waits is read in time.
     double next_in_time = state.time;
     const double wait = std::isfinite(stroke.longest) ? stroke.longest / readings_per_length : stroke.longest;
+    const bool last = s + 1 == scene.strokes.size();
+    const double middle = state.time + 0.5 * stroke.longest;
     while (state.breakdown.empty()) {
+      if (last && scene.contact && state.contact.pressed.since == 0.0 && state.time >= middle)
+        state.contact.pressed = {.impulse = {}, .since = state.time};
       const double towards = stroke.ramp > 0.0 ? 1.0 - std::exp(-state.step / stroke.ramp) : 1.0;
       state.piston.speed += towards * (stroke.speed - state.piston.speed);
       for (const Stage& stage : stages) stage.apply(state, stroke);
@@ -153,13 +191,14 @@ BodiesResult run(const Scene& scene, const std::function<bool(std::size_t, doubl
   }
   if (!state.breakdown.empty())
     result.refusals.push_back(fmt::format("broke down after {:.3g} ms: {}", 1e3 * state.time, state.breakdown));
+  result.pressed = pressed_nodes(state);
   judge(result, scene);
   result.accepted = result.refusals.empty();
   result.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return result;
 }
 
-nlohmann::ordered_json result_json(const BodiesResult& result) {
+nlohmann::ordered_json result_json(const BodiesResult& result, const Scene& scene) {
   nlohmann::ordered_json json;
   json["accepted"] = result.accepted;
   json["refusals"] = result.refusals;
@@ -183,6 +222,21 @@ nlohmann::ordered_json result_json(const BodiesResult& result) {
   column("damping", [](const Reading& r) { return r.damping; });
   column("interface", [](const Reading& r) { return r.interface; });
   column("residue", [](const Reading& r) { return r.residue(); });
+  if (scene.contact) {
+    column("gravity_work", [](const Reading& r) { return r.gravity_work; });
+    column("rigid_work", [](const Reading& r) { return r.rigid_work; });
+    column("friction_heat", [](const Reading& r) { return r.friction_heat; });
+    column("impact", [](const Reading& r) { return r.impact; });
+    column("velocity_x", [](const Reading& r) { return r.velocity_x; });
+    column("velocity_y", [](const Reading& r) { return r.velocity_y; });
+    column("rigid_force_x", [](const Reading& r) { return r.rigid_force_x; });
+    column("rigid_force_y", [](const Reading& r) { return r.rigid_force_y; });
+    for (const BodiesResult::Pressure& node : result.pressed) {
+      json["pressed"]["x"].push_back(node.x);
+      json["pressed"]["y"].push_back(node.y);
+      json["pressed"]["force"].push_back(node.force);
+    }
+  }
   json["units"] = {{"time", "s"},        {"length", "mm"},        {"force", "N/mm"},         {"stress", "MPa"},
                    {"temperature", "K"}, {"energies", "N mm/mm"}, {"entropy", "N mm/(mm K)"}};
   json["cost"] = {{"wall_s", result.wall_seconds},

@@ -19,7 +19,12 @@ struct Reading {
   double stress_xx, stress_yy;                      ///< mean Kirchhoff stress, MPa
   double piston_work, heat, bath_entropy, entropy;  ///< since the start; entropy: of the bodies
   double internal, kinetic, damping, interface;     ///< internal: its change since the start
-  double residue() const { return piston_work + heat - internal - kinetic - damping - interface; }
+  double start_kinetic;
+  double gravity_work, rigid_work, friction_heat, impact;  ///< since the start; zero without gravity and contact
+  double velocity_x, velocity_y;                           ///< of the bodies' centre of mass, mm/s
+  double rigid_force_x, rigid_force_y;  ///< of the first rigid body on the others, mean since the last reading
+  double supplied() const { return piston_work + heat + gravity_work + rigid_work + start_kinetic; }
+  double residue() const { return supplied() - internal - kinetic - damping - interface - friction_heat - impact; }
 };
 
 struct BodiesResult {
@@ -31,6 +36,10 @@ struct BodiesResult {
   std::int64_t steps = 0, particle_steps = 0;
   double wall_seconds = 0;
   std::size_t particles = 0;
+  struct Pressure {
+    double x, y, force;  ///< of a node, mm; N/mm, mean over the last half of the last stroke
+  };
+  std::vector<Pressure> pressed;    ///< where bodies touched
   nlohmann::ordered_json measures;  ///< what the scene is for, name to number
 };
 
@@ -39,6 +48,6 @@ struct BodiesResult {
 BodiesResult run(const Scene& scene, const std::function<bool(std::size_t stroke, double stretch)>& progress = {});
 
 /// The result as `kerf simulate --json` prints it.
-nlohmann::ordered_json result_json(const BodiesResult& result);
+nlohmann::ordered_json result_json(const BodiesResult& result, const Scene& scene);
 
 }  // namespace kerf::forward::bodies

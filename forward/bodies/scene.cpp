@@ -33,7 +33,9 @@ std::vector<Block> declare() {
                       number("courant_number", "1", 0.01, 0.9,
                              "time step in transits of the fastest wave through a cell")
                           .or_else("0.5"),
-                      wall("left"), text("right", "the piston, a wall that moves", {"roller"}).or_else("roller"),
+                      wall("left"),
+                      text("right", "the piston, a wall that moves; open only beside a [contact]", {"open", "roller"})
+                          .or_else("roller"),
                       wall("bottom"), wall("top")},
        .required = true},
       {.path = "stroke",
@@ -47,7 +49,7 @@ std::vector<Block> declare() {
             number("exchange_time", "ms", 0, 1e6,
                    "in which bodies and bath come to 1/e of their difference; 0: at once")
                 .or_else("0 ms"),
-            number("piston_speed", "m/s", -1e4, 1e4, "outwards positive"),
+            number("piston_speed", "m/s", -1e4, 1e4, "outwards positive").or_else("0 m/s"),
             number("ramp", "ms", 0, 1e6, "time constant in which the piston takes that speed").or_else("0 ms"),
             number("longest", "ms", 1e-9, 1e9, "the stroke ends after this time at the latest").if_given(),
             number("until_stretch", "1", 1e-3, 1e3, "length of the box over its first length").if_given(),
@@ -71,6 +73,33 @@ std::vector<Block> declare() {
                       number("right", "K", 1.0, 1e5, "temperature of the piston").if_given(),
                       number("bottom", "K", 1.0, 1e5, "temperature of this wall").if_given(),
                       number("top", "K", 1.0, 1e5, "temperature of this wall").if_given()}},
+      {.path = "gravity",
+       .variant = "",
+       .meaning = "an acceleration of all that deforms",
+       .parameters = {number("x", "m/s^2", -1e9, 1e9, "along x").or_else("0 m/s^2"),
+                      number("y", "m/s^2", -1e9, 1e9, "along y").or_else("0 m/s^2")}},
+      {.path = "contact",
+       .variant = "",
+       .meaning = "bodies meet, slide and part, on a grid in the current configuration",
+       .parameters =
+           {number("friction", "1", 0, 10, "Coulomb's coefficient").or_else("0"),
+            text("normal",
+                 "of two surfaces at a node: along the larger of their volume gradients (MVG), the average of both "
+                 "weighted by volume (AVG), or specified (SN)",
+                 {"MVG", "AVG", "SN"})
+                .or_else("MVG"),
+            number("normal_x", "1", -1, 1, "a specified normal's direction, either way").if_given(),
+            number("normal_y", "1", -1, 1, "and along y").if_given(),
+            number("screening", "1", 0, 1, "contact only where two bodies fill this much of a node's cell")
+                .or_else("0"),
+            flag("approach", "contact only where bodies come closer; else they stick once they overlap")
+                .or_else("true"),
+            text(
+                "overlap",
+                "contact only where surfaces overlap, by where the points are (position), or by how far they have come "
+                "from where they touched at the start (displacement)",
+                {"off", "position", "displacement"})
+                .or_else("position")}},
       {.path = "pic_damping",
        .variant = "",
        .meaning = "FLIP velocities blended towards PIC; damps where velocity gradients are high",
@@ -80,8 +109,24 @@ std::vector<Block> declare() {
       number("left", "mm", 0, 1e5, "left edge of the rectangle").or_else("0 mm"),
       number("bottom", "mm", 0, 1e5, "lower edge").or_else("0 mm"),
       number("width", "mm", 1e-5, 1e5, "along x; absent: up to the piston").if_given(),
-      number("height", "mm", 1e-5, 1e5, "along y; absent: up to the top of the box").if_given()};
+      number("height", "mm", 1e-5, 1e5, "along y; absent: up to the top of the box").if_given(),
+      number("angle", "deg", -180, 180, "by which the rectangle is turned about its lower left corner")
+          .or_else("0 deg"),
+      number("radius", "mm", 1e-5, 1e5, "of a disc: the body is what of it lies in the rectangle").if_given(),
+      number("center_x", "mm", -1e5, 1e5, "of the disc").if_given(),
+      number("center_y", "mm", -1e5, 1e5, "of the disc").if_given(),
+      number("velocity_x", "m/s", -1e5, 1e5, "along x, at the start; of a rigid body, what it takes").or_else("0 m/s"),
+      number("velocity_y", "m/s", -1e5, 1e5, "along y").or_else("0 m/s")};
   for (Block& block : laws::body_blocks(place)) blocks.push_back(std::move(block));
+  blocks.push_back({.path = "rigid",
+                    .variant = "",
+                    .meaning = "a body that nothing deforms or deflects",
+                    .parameters = place,
+                    .repeated = true});
+  for (const Parameter& parameter :
+       {number("ramp", "ms", 0, 1e6, "time constant in which it takes its velocity, and loses it").or_else("0 ms"),
+        number("stop", "ms", 0, 1e9, "time from which it comes to rest").if_given()})
+    blocks.back().parameters.push_back(parameter);
   return blocks;
 }
 
@@ -90,22 +135,42 @@ std::size_t index_of(const Names& names, const std::string& name) {
   return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
 }
 
+Shape read_shape(const Values& values, const char* block, double length, double height) {
+  Shape shape{.left = values.number("left"),
+              .bottom = values.number("bottom"),
+              .width = 0,
+              .height = 0,
+              .angle = values.number("angle"),
+              .disc = {}};
+  shape.width = values.has("width") ? values.number("width") : length - shape.left;
+  shape.height = values.has("height") ? values.number("height") : height - shape.bottom;
+  const double rounding = 1e-9 * (length + height);
+  bool fits = shape.width > 0.0 && shape.height > 0.0;
+  for (const Place& corner : shape.corners())
+    fits &=
+        corner.x > -rounding && corner.x < length + rounding && corner.y > -rounding && corner.y < height + rounding;
+  if (!fits)
+    throw InputError(
+        fmt::format("{}: [[{}]] of {:.4g} x {:.4g} mm at ({:.4g}, {:.4g}) mm{} does not fit into the box "
+                    "of {:.4g} x {:.4g} mm",
+                    values.where("width"), block, shape.width, shape.height, shape.left, shape.bottom,
+                    shape.angle != 0.0 ? ", turned," : "", length, height));
+  if (!values.has("radius") && !values.has("center_x") && !values.has("center_y")) return shape;
+  for (const char* key : {"radius", "center_x", "center_y"})
+    if (!values.has(key))
+      throw InputError(fmt::format("{}: [[{}]] lacks the key \"{}\" of its disc", values.where("law"), block, key));
+  shape.disc = {.x = values.number("center_x"), .y = values.number("center_y"), .radius = values.number("radius")};
+  if (divide(shape, shape.width / 64, shape.height / 64).empty())
+    throw InputError(fmt::format("{}: [[{}]] has no part of its disc in its rectangle", values.where("radius"), block));
+  return shape;
+}
+
 BodyPlan read_body(const Values& values, double length, double height) {
   BodyPlan body{.law = laws::make_body_law(values),
-                .left = values.number("left"),
-                .bottom = values.number("bottom"),
-                .width = 0,
-                .height = 0,
+                .shape = read_shape(values, "body", length, height),
+                .velocity_x = values.number("velocity_x"),
+                .velocity_y = values.number("velocity_y"),
                 .where = values.where("law")};
-  const double room_x = length - body.left, room_y = height - body.bottom;
-  body.width = values.has("width") ? values.number("width") : room_x;
-  body.height = values.has("height") ? values.number("height") : room_y;
-  constexpr double rounding = 1.0 + 1e-9;
-  if (!(body.width > 0.0) || !(body.height > 0.0) || body.width > room_x * rounding || body.height > room_y * rounding)
-    throw InputError(
-        fmt::format("{}: [[body]] of {:.4g} x {:.4g} mm at ({:.4g}, {:.4g}) mm does not fit into the box "
-                    "of {:.4g} x {:.4g} mm",
-                    body.where, body.width, body.height, body.left, body.bottom, length, height));
   std::visit(
       [&](const auto& law) {
         if constexpr (std::decay_t<decltype(law)>::is_thermal)
@@ -113,6 +178,70 @@ BodyPlan read_body(const Values& values, double length, double height) {
       },
       body.law);
   return body;
+}
+
+RigidPlan read_rigid(const Values& values, double length, double height) {
+  return {.shape = read_shape(values, "rigid", length, height),
+          .velocity_x = values.number("velocity_x"),
+          .velocity_y = values.number("velocity_y"),
+          .ramp = values.number("ramp"),
+          .stop = values.has("stop") ? values.number("stop") : std::numeric_limits<double>::infinity(),
+          .where = values.where("left")};
+}
+
+/// No place belongs to two bodies, as seen at every quarter of a cell.
+void refuse_shared_places(const Scene& scene) {
+  struct One {
+    const Shape* shape;
+    const std::string* where;
+  };
+  std::vector<One> all;
+  for (const BodyPlan& body : scene.bodies) all.push_back({&body.shape, &body.where});
+  for (const RigidPlan& rigid : scene.rigids) all.push_back({&rigid.shape, &rigid.where});
+  for (const One& a : all)
+    for (const Part& part : divide(*a.shape, 0.25 * scene.cell, 0.25 * scene.cell))
+      for (const One& b : all)
+        if (&a != &b && b.shape->contains(part.at, 0.01 * scene.cell))
+          throw InputError(fmt::format("{}: this body and the one at {} both hold the place ({:.4g}, {:.4g}) mm",
+                                       *a.where, *b.where, part.at.x, part.at.y));
+}
+
+Contact read_contact(const Values& values, const Scene& scene) {
+  const std::string &normal = values.text("normal"), &overlap = values.text("overlap");
+  Contact contact{.friction = values.number("friction"),
+                  .normal = normal == "MVG"   ? Normal::largest_gradient
+                            : normal == "AVG" ? Normal::mean_gradient
+                                              : Normal::specified,
+                  .screening = values.number("screening"),
+                  .approach = values.flag("approach"),
+                  .overlap = overlap == "off"        ? Overlap::off
+                             : overlap == "position" ? Overlap::position
+                                                     : Overlap::displacement};
+  const auto refuse = [&](const char* key, const std::string& why) {
+    throw InputError(fmt::format("{}: [contact] {}", values.where(key), why));
+  };
+  if ((contact.normal == Normal::specified) != (values.has("normal_x") || values.has("normal_y")))
+    refuse("normal", contact.normal == Normal::specified
+                         ? "has normal = \"SN\" and lacks normal_x and normal_y"
+                         : fmt::format("has a direction, which only normal = \"SN\" uses (found: \"{}\")", normal));
+  if (contact.normal == Normal::specified) {
+    const double x = values.has("normal_x") ? values.number("normal_x") : 0.0;
+    const double y = values.has("normal_y") ? values.number("normal_y") : 0.0;
+    const double length = std::hypot(x, y);
+    if (!(length > 0.0)) refuse("normal_x", "has a normal of no length");
+    contact.normal_x = x / length;
+    contact.normal_y = y / length;
+  }
+  if (scene.bodies.size() + scene.rigids.size() < 2)
+    refuse("normal", "needs a second [[body]], or a [[rigid]] one, to touch");
+  if (scene.interface) refuse("normal", "and [interface] exclude each other: joined faces do not part");
+  if (scene.conduction) refuse("normal", "and [conduction] exclude each other: heat would cross gaps");
+  for (const Stroke& stroke : scene.strokes)
+    if (stroke.speed != 0.0 || stroke.until_stretch)
+      refuse("normal",
+             "holds the piston still: it is a [[rigid]] body that pushes (allowed: strokes without "
+             "piston_speed and until_stretch)");
+  return contact;
 }
 
 Stroke read_stroke(const Values& values, bool thermal) {
@@ -180,6 +309,9 @@ Scene read_scene(const Document& document) {
               .interface = {},
               .conduction = {},
               .pic_damping = {},
+              .rigids = {},
+              .gravity = {},
+              .contact = {},
               .measures = {}};
   for (const std::string& name : top_level.list("measures"))
     scene.measures.push_back(static_cast<Measure>(index_of(measure_names, name)));
@@ -191,6 +323,8 @@ Scene read_scene(const Document& document) {
                     "{:.4g} mm",
                     box.where("cell"), scene.cell, scene.length, scene.height));
   for (const Values& body : contents.all("body")) scene.bodies.push_back(read_body(body, scene.length, scene.height));
+  for (const Values& rigid : contents.all("rigid"))
+    scene.rigids.push_back(read_rigid(rigid, scene.length, scene.height));
   const bool thermal = scene.is_thermal();
   for (const Values& stroke : contents.all("stroke")) scene.strokes.push_back(read_stroke(stroke, thermal));
   double stretch = 1.0;
@@ -210,6 +344,9 @@ Scene read_scene(const Document& document) {
     if (scene.bodies.size() != 2)
       throw InputError(fmt::format("{}: [interface] joins two bodies; this scene has {}", values.where("normal"),
                                    scene.bodies.size()));
+    for (const BodyPlan& body : scene.bodies)
+      if (body.shape.angle != 0.0 || body.shape.disc)
+        throw InputError(fmt::format("{}: [interface] joins rectangles that are not turned", body.where));
     const double normal = values.number("normal");
     scene.interface = {.normal = normal,
                        .compressive = values.has("compressive") ? values.number("compressive") : normal,
@@ -232,6 +369,16 @@ Scene read_scene(const Document& document) {
     }
   }
   if (contents.has("pic_damping")) scene.pic_damping = {.rate = contents.at("pic_damping").number("rate")};
+  if (contents.has("gravity"))
+    scene.gravity = {.x = contents.at("gravity").number("x"), .y = contents.at("gravity").number("y")};
+  if (contents.has("contact")) scene.contact = read_contact(contents.at("contact"), scene);
+  if (!scene.contact && !scene.rigids.empty())
+    throw InputError(fmt::format("{}: a [[rigid]] body is felt only through a [contact]", scene.rigids[0].where));
+  if (!scene.contact && scene.walls[right] == Wall::open)
+    throw InputError(
+        fmt::format("{}: right = \"open\", but without a [contact] the right wall is the piston (allowed: roller)",
+                    box.where("right")));
+  refuse_shared_places(scene);
   return scene;
 }
 

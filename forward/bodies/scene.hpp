@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "forward/bodies/shape.hpp"
 #include "forward/scene/scene.hpp"
 #include "models/base/document.hpp"
 #include "models/laws/body_law.hpp"
@@ -17,9 +18,18 @@ namespace kerf::forward::bodies {
 
 struct BodyPlan {
   laws::BodyLaw law;
-  double left, bottom, width, height;  ///< a rectangle, mm
-  double temperature = 0;              ///< at the start, K; only of thermal laws
-  std::string where;                   ///< of the block in its file
+  Shape shape;
+  double velocity_x = 0, velocity_y = 0;  ///< at the start, mm/s
+  double temperature = 0;                 ///< at the start, K; only of thermal laws
+  std::string where;                      ///< of the block in its file
+};
+
+/// A body that nothing deforms or deflects. It takes its velocity in a time constant, and loses it so after `stop`.
+struct RigidPlan {
+  Shape shape;
+  double velocity_x, velocity_y;  ///< mm/s
+  double ramp, stop;              ///< s
+  std::string where;
 };
 
 enum class Wall { open, roller };
@@ -53,9 +63,21 @@ struct Conduction {
   std::array<std::optional<double>, 4> wall_temperature;  ///< K, by Edge
 };
 
+/// How bodies touch: see bodies/contact.
+enum class Normal { largest_gradient, mean_gradient, specified };
+enum class Overlap { off, position, displacement };
+struct Contact {
+  double friction = 0;  ///< Coulomb's coefficient
+  Normal normal = Normal::largest_gradient;
+  double normal_x = 0, normal_y = 0;  ///< unit vector, of a specified normal
+  double screening = 0;               ///< least volume of two bodies at a node, over the cell's; 0: not asked
+  bool approach = true;               ///< only bodies that come closer
+  Overlap overlap = Overlap::position;
+};
+
 /// What to read off the run: see bodies/measures.
-enum class Measure { cycle, rubber, expansion, modulus };
-inline constexpr std::array<const char*, 4> measure_names{"cycle", "rubber", "expansion", "modulus"};
+enum class Measure { cycle, rubber, expansion, modulus, sliding };
+inline constexpr std::array<const char*, 5> measure_names{"cycle", "rubber", "expansion", "modulus", "sliding"};
 
 struct Scene {
   std::string title;
@@ -68,6 +90,9 @@ struct Scene {
   std::optional<Interface> interface;
   std::optional<Conduction> conduction;
   std::optional<PicDamping> pic_damping;
+  std::vector<RigidPlan> rigids;
+  std::optional<Place> gravity;    ///< mm/s^2
+  std::optional<Contact> contact;  ///< then the grid lies in the current configuration
   std::vector<Measure> measures;
   bool is_thermal() const;
 };

@@ -25,30 +25,45 @@ void add_point(Points& p, double x, double y, double volume, const std::vector<l
   for (std::size_t k = 0; k < memory.size(); ++k) p.memory[k].push_back(memory[k].at_rest);
 }
 
-Body make_body(const BodyPlan& plan, const Scene& scene, double gap_x, double gap_y) {
+Body make_body(const BodyPlan& plan, double gap_x, double gap_y) {
   Body body{.law = plan.law, .points = {}, .field = {}};
   Points& p = body.points;
   const std::vector<laws::Memory> memory =
       std::visit([](const auto& law) { return std::decay_t<decltype(law)>::memory(); }, plan.law);
   p.memory.resize(memory.size());
-  // A point belongs to the body whose rectangle holds it.
-  const int along = cells_along(scene.length, gap_x), up = cells_along(scene.height, gap_y);
-  const auto inside = [](double at, double begin, double size) { return at > begin && at < begin + size; };
-  for (int j = 0; j < up; ++j)
-    for (int i = 0; i < along; ++i) {
-      const double x = gap_x * (i + 0.5), y = gap_y * (j + 0.5);
-      if (inside(x, plan.left, plan.width) && inside(y, plan.bottom, plan.height))
-        add_point(p, x, y, gap_x * gap_y, memory);
-    }
-  while (!p.x.empty() && p.size() % lane_count != 0) add_point(p, p.x.back(), p.y.back(), 0.0, memory);
+  for (const Part& part : divide(plan.shape, gap_x, gap_y)) add_point(p, part.at.x, part.at.y, part.volume, memory);
+  p.velocity_x.assign(p.size(), plan.velocity_x);
+  p.velocity_y.assign(p.size(), plan.velocity_y);
+  while (p.size() % lane_count != 0) {
+    add_point(p, p.x.back(), p.y.back(), 0.0, memory);
+    p.velocity_x.back() = plan.velocity_x;
+    p.velocity_y.back() = plan.velocity_y;
+  }
   if (plan.temperature > 0.0) p.temperature.assign(p.size(), plan.temperature);
   return body;
+}
+
+RigidBody make_rigid(const RigidPlan& plan, double gap_x, double gap_y) {
+  RigidBody rigid;
+  const auto add = [&](const Place& at, double volume) {
+    rigid.x.push_back(at.x);
+    rigid.y.push_back(at.y);
+    rigid.volume.push_back(volume);
+  };
+  for (const Part& part : divide(plan.shape, gap_x, gap_y)) add(part.at, part.volume);
+  while (rigid.x.size() % lane_count != 0) add({rigid.x.back(), rigid.y.back()}, 0.0);
+  if (plan.ramp == 0.0) {
+    rigid.velocity_x = plan.velocity_x;
+    rigid.velocity_y = plan.velocity_y;
+  }
+  return rigid;
 }
 
 }  // namespace
 
 State lay_out(const Scene& scene) {
-  State state{.grid = {}, .bodies = {}, .piston = {.position = scene.length}, .bath = {}, .breakdown = {}};
+  State state{
+      .grid = {}, .bodies = {}, .piston = {.position = scene.length}, .bath = {}, .contact = {}, .breakdown = {}};
   Grid& grid = state.grid;
   const int along = cells_along(scene.length, scene.cell), up = cells_along(scene.height, scene.cell);
   grid.cell_x = scene.length / along;
@@ -64,12 +79,14 @@ State lay_out(const Scene& scene) {
   grid.origin_y = -(outside - 0.5) * grid.cell_y;
   const int side = scene.particles_per_cell_side;
   for (const BodyPlan& plan : scene.bodies) {
-    state.bodies.push_back(make_body(plan, scene, grid.cell_x / side, grid.cell_y / side));
+    state.bodies.push_back(make_body(plan, grid.cell_x / side, grid.cell_y / side));
     VelocityField& field = state.bodies.back().field;
     field.mass.assign(grid.nodes() + lane_count, 0.0);
     for (auto* values : {&field.momentum, &field.velocity, &field.change, &field.force})
       values->assign(2 * grid.nodes() + lane_count, 0.0);
   }
+  for (const RigidPlan& plan : scene.rigids)
+    state.contact.rigids.push_back(make_rigid(plan, grid.cell_x / side, grid.cell_y / side));
   find_stress(state);
   state.step = stable_step(state, scene);
   return state;

@@ -8,10 +8,16 @@
 
 namespace kerf::forward::bodies {
 
+/// Where the grid lies, and kernels are taken. In the reference configuration (total Lagrangian) unless bodies move
+/// past each other: in the current one quadratic splines are unstable under a tension of a quarter of the modulus,
+/// which rubber exceeds.
+enum class Frame { reference, current };
+inline Frame frame_of(const Scene& scene) {
+  return scene.contact ? Frame::current : Frame::reference;
+}
+
 /// Material points of one body, structure of arrays, padded to whole batches with points of no volume. Units as in a
-/// cut: mm, mm/s, MPa; volume is the reference volume per unit width, mm^2. The grid lies in the reference
-/// configuration (total Lagrangian): kernels are taken at the reference positions. In the current configuration
-/// quadratic splines are unstable under a tension of a quarter of the modulus, which rubber exceeds.
+/// cut: mm, mm/s, MPa; volume is the reference volume per unit width, mm^2.
 struct Points {
   std::vector<double> reference_x, reference_y, x, y, velocity_x, velocity_y, volume;
   std::vector<double> F_xx, F_xy, F_yx, F_yy;                      ///< deformation gradient dx/dX
@@ -19,6 +25,9 @@ struct Points {
   std::vector<std::vector<double>> memory;                         ///< what the law keeps, see laws::Memory
   std::vector<double> temperature;                                 ///< K; only of thermal laws
   std::size_t size() const { return x.size(); }
+  /// Where kernels are taken.
+  const std::vector<double>& kernel_x(Frame frame) const { return frame == Frame::current ? x : reference_x; }
+  const std::vector<double>& kernel_y(Frame frame) const { return frame == Frame::current ? y : reference_y; }
   static constexpr std::size_t mechanical_numbers = 15;  ///< kept for every point, before memory and temperature
 };
 
@@ -41,14 +50,49 @@ struct HeatBook {
   double heat = 0, entropy = 0;
 };
 
+/// A body as the nodes see its place: volume, its gradient, and volume times the mean of what [contact] overlap looks
+/// at, seen from the node: positions or displacements. Vectors are interleaved (x, y).
+struct Presence {
+  std::vector<double> volume, gradient, moment;
+};
+
+struct RigidBody {
+  std::vector<double> x, y, volume;  ///< as of Points
+  double velocity_x = 0, velocity_y = 0;
+  double moved_x = 0, moved_y = 0;  ///< since the start, mm
+  double force_x = 0, force_y = 0;  ///< on the bodies that it touches in this step, N/mm
+};
+
+/// Two bodies that touch at a node; those from `bodies.size()` on are rigid. The normal points from a to b.
+struct Touch {
+  std::size_t node, a, b;
+  double normal_x, normal_y;
+};
+
+/// Everything about bodies in contact; empty without. Energies since the start, N mm/mm.
+struct ContactState {
+  std::vector<RigidBody> rigids;
+  std::vector<Presence> presence;             ///< of bodies, then of rigid ones
+  std::vector<Touch> touches;                 ///< in this step
+  std::vector<std::vector<double>> velocity;  ///< of every body's nodes, as gathered
+  double rigid_work = 0;                      ///< of the rigid bodies on the others
+  double friction_heat = 0;
+  double impact = 0;  ///< lost where approaching surfaces take one velocity
+  struct Pressed {
+    std::vector<double> impulse;  ///< normal, at every node, N s/mm
+    double since = 0;             ///< s
+  } pressed;
+};
+
 struct State {
-  Grid grid;  ///< in the reference configuration; its own velocity fields are not used
+  Grid grid;  ///< its own velocity fields are not used
   std::vector<Body> bodies;
   Piston piston;
   HeatBook bath;
   double damping = 0;  ///< work lost to PIC, N mm/mm
   double time = 0, step = 0;
   double interface_energy = 0;
+  ContactState contact;
   std::string breakdown;  ///< why the run cannot go on; empty while it can
 };
 

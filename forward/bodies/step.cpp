@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "forward/bodies/conduction.hpp"
+#include "forward/bodies/contact.hpp"
 #include "forward/bodies/walls.hpp"
 #include "forward/mpm/stencil.hpp"
 
@@ -41,6 +42,10 @@ struct Gradient {
     const Lanes one_over = 1.0 / (xx * yy - xy * yx);
     return {one_over * yy, -one_over * xy, -one_over * yx, one_over * xx};
   }
+  Gradient transpose() const { return {xx, yx, xy, yy}; }
+  Gradient operator*(const Gradient& b) const {
+    return {xx * b.xx + xy * b.yx, xx * b.xy + xy * b.yy, yx * b.xx + yy * b.yx, yx * b.xy + yy * b.yy};
+  }
 };
 Gradient load_gradient(const Points& p, std::size_t first) {
   return {load(&p.F_xx[first]), load(&p.F_xy[first]), load(&p.F_yx[first]), load(&p.F_yy[first])};
@@ -69,9 +74,10 @@ void gather_momentum(State& state, const Scene& scene) {
     for (auto* values : {&field.mass, &field.momentum, &field.velocity, &field.change, &field.force})
       std::fill(values->begin(), values->end(), 0.0);
     const Points& p = body.points;
+    const std::vector<double>&x = p.kernel_x(frame_of(scene)), &y = p.kernel_y(frame_of(scene));
     const double density = std::visit([](const auto& law) { return law.mass_density(); }, body.law);
     for (std::size_t i = 0; i < p.size(); i += lane_count)
-      Stencil(state.grid, load(&p.reference_x[i]), load(&p.reference_y[i]))
+      Stencil(state.grid, load(&x[i]), load(&y[i]))
           .add_momentum(field.momentum.data(), field.mass.data(), density * load(&p.volume[i]), load(&p.velocity_x[i]),
                         load(&p.velocity_y[i]));
     fold_momentum(state, scene, field);
@@ -99,14 +105,14 @@ void exchange_heat(const Law& law, const Stroke& stroke, double step, Lanes conf
   book.entropy += heat / stroke.temperature;
 }
 
-template <class Law>
+template <Frame frame, class Law>
 void strain_points(State& state, Body& body, const Law& law, const Stroke& stroke) {
   Points& p = body.points;
   const Grid& grid = state.grid;
   const double strain_x = state.step * grid.inverse_cell_x, strain_y = state.step * grid.inverse_cell_y;
   bool sound = true;
   for (std::size_t first = 0; first < p.size(); first += lane_count) {
-    const Stencil stencil(grid, load(&p.reference_x[first]), load(&p.reference_y[first]));
+    const Stencil stencil(grid, load(&p.kernel_x(frame)[first]), load(&p.kernel_y(frame)[first]));
     const auto [value, rise] = stencil.value_and_rise(body.field.velocity.data());
     Lanes xx{}, xy{}, yx{}, yy{};
     for (std::size_t i = 0; i < 3; ++i) {
@@ -116,13 +122,11 @@ void strain_points(State& state, Body& body, const Law& law, const Stroke& strok
       yy += stencil.weight_x[i] * rise[2 * i + 1];
     }
     const Gradient F = load_gradient(p, first);
-    const Gradient inverse = F.inverse();
-    // dF = dt dv/dX, and l = dF F^-1.
-    const Gradient dF{strain_x * xx, strain_y * xy, strain_x * yx, strain_y * yy};
-    const laws::StrainIncrement l{.xx = dF.xx * inverse.xx + dF.xy * inverse.yx,
-                                  .xy = dF.xx * inverse.xy + dF.xy * inverse.yy,
-                                  .yx = dF.yx * inverse.xx + dF.yy * inverse.yx,
-                                  .yy = dF.yx * inverse.xy + dF.yy * inverse.yy};
+    // dt dv/dX = dF, or dt dv/dx = l; dF = l F.
+    const Gradient rate{strain_x * xx, strain_y * xy, strain_x * yx, strain_y * yy};
+    const Gradient dF = frame == Frame::current ? rate * F : rate;
+    const Gradient dx = frame == Frame::current ? rate : rate * F.inverse();
+    const laws::StrainIncrement l{.xx = dx.xx, .xy = dx.xy, .yx = dx.yx, .yy = dx.yy};
     const Gradient now{F.xx + dF.xx, F.xy + dF.xy, F.yx + dF.yx, F.yy + dF.yy};
     store_gradient(p, first, now);
     const Lanes volume = load(&p.volume[first]);
@@ -138,10 +142,9 @@ void strain_points(State& state, Body& body, const Law& law, const Stroke& strok
       sound &= law.find_stress(points);
     }
     store_points(p, first, points);
-    // The nominal stress P = tau F^-T, force per reference area.
-    const Gradient back = now.inverse();
-    const Gradient P{points.xx * back.xx + points.xy * back.xy, points.xx * back.yx + points.xy * back.yy,
-                     points.xy * back.xx + points.yy * back.xy, points.xy * back.yx + points.yy * back.yy};
+    // The stress that goes with gradients in X is the nominal one, P = tau F^-T.
+    const Gradient tau{points.xx, points.xy, points.xy, points.yy};
+    const Gradient P = frame == Frame::current ? tau : tau * now.inverse().transpose();
     const Lanes along = -grid.inverse_cell_x * volume, across = -grid.inverse_cell_y * volume;
     std::array<Lanes, 6> by_weight, by_slope;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -156,6 +159,24 @@ void strain_points(State& state, Body& body, const Law& law, const Stroke& strok
     state.breakdown = "a body lost its volume, its temperature, or the return to its yield surface";
 }
 
+void weigh(State& state, const Scene& scene) {
+  for (Body& body : state.bodies) {
+    const Points& p = body.points;
+    const std::vector<double>&x = p.kernel_x(frame_of(scene)), &y = p.kernel_y(frame_of(scene));
+    const double density = std::visit([](const auto& law) { return law.mass_density(); }, body.law);
+    for (std::size_t first = 0; first < p.size(); first += lane_count) {
+      const Stencil stencil(state.grid, load(&x[first]), load(&y[first]));
+      const Lanes mass = density * load(&p.volume[first]);
+      std::array<Lanes, 6> share;
+      for (std::size_t i = 0; i < 3; ++i) {
+        share[2 * i] = stencil.weight_x[i] * mass * scene.gravity->x;
+        share[2 * i + 1] = stencil.weight_x[i] * mass * scene.gravity->y;
+      }
+      stencil.add(body.field.force.data(), share);
+    }
+  }
+}
+
 void change_velocity(State& state, const Scene& scene, VelocityField& field) {
   state.piston.force += fold_force(state, scene, field);
   for (std::size_t node = 0; node < state.grid.nodes(); ++node)
@@ -165,13 +186,15 @@ void change_velocity(State& state, const Scene& scene, VelocityField& field) {
 
 void move_points(State& state, const Scene& scene, Body& body) {
   Points& p = body.points;
+  const Frame frame = frame_of(scene);
+  const std::vector<double>&kernel_x = p.kernel_x(frame), &kernel_y = p.kernel_y(frame);
   const double dt = state.step;
   const double rate = scene.pic_damping ? 1.0 - std::exp(-scene.pic_damping->rate * scene.courant_number) : 0.0;
   const double density = std::visit([](const auto& law) { return law.mass_density(); }, body.law);
   Lanes lost{};
   for (std::size_t first = 0; first < p.size(); first += lane_count) {
     const Lanes x = load(&p.x[first]), y = load(&p.y[first]);
-    const Stencil stencil(state.grid, load(&p.reference_x[first]), load(&p.reference_y[first]));
+    const Stencil stencil(state.grid, load(&kernel_x[first]), load(&kernel_y[first]));
     const auto [old_x, old_y] = stencil.sum(body.field.velocity.data());
     const auto [change_x, change_y] = stencil.sum(body.field.change.data());
     const Lanes move_x = old_x + change_x, move_y = old_y + change_y;
@@ -205,9 +228,14 @@ std::vector<Stage> plan(const Scene& scene, Joint& joint) {
   const auto add = [&](std::string name, std::string does, std::function<void(State&, const Stroke&)> apply) {
     stages.push_back({std::move(name), std::move(does), std::move(apply)});
   };
-  add("project", "grid velocities p/m of every body under the walls, in the reference configuration",
+  add("project",
+      scene.contact ? "grid velocities p/m of every body under the walls, in the current configuration"
+                    : "grid velocities p/m of every body under the walls, in the reference configuration",
       [&scene](State& state, const Stroke&) { gather_momentum(state, scene); });
-  if (scene.bodies.size() > 1)
+  if (scene.contact)
+    add("meet", "where bodies touch, along which normal; strains see no surfaces that approach",
+        [&scene](State& state, const Stroke&) { meet(state, scene); });
+  else if (scene.bodies.size() > 1)
     add("share", scene.interface ? "the interface slows what parts the bodies" : "bodies share one velocity",
         [&joint](State& state, const Stroke&) { joint.share_velocity(state); });
   add("strain",
@@ -216,9 +244,18 @@ std::vector<Stage> plan(const Scene& scene, Joint& joint) {
       [&scene](State& state, const Stroke& stroke) {
         for (Body& body : state.bodies) {
           mirror_velocity(state, scene, body.field);
-          std::visit([&](const auto& law) { strain_points(state, body, law, stroke); }, body.law);
+          std::visit(
+              [&](const auto& law) {
+                if (scene.contact)
+                  strain_points<Frame::current>(state, body, law, stroke);
+                else
+                  strain_points<Frame::reference>(state, body, law, stroke);
+              },
+              body.law);
         }
       });
+  if (scene.gravity)
+    add("gravity", "weight of every body", [&scene](State& state, const Stroke&) { weigh(state, scene); });
   if (scene.conduction)
     add("conduct", "heat flows down the temperature's gradient and through walls that have a temperature",
         [conductor = Conductor(scene)](State& state, const Stroke&) mutable { conductor(state); });
@@ -227,7 +264,12 @@ std::vector<Stage> plan(const Scene& scene, Joint& joint) {
         state.piston.force = 0.0;
         for (Body& body : state.bodies) change_velocity(state, scene, body.field);
       });
-  if (scene.bodies.size() > 1)
+  if (scene.contact)
+    add("touch",
+        scene.contact->friction > 0.0 ? "normal impulses and Coulomb friction between bodies that touch"
+                                      : "normal impulses between bodies that touch",
+        [&scene](State& state, const Stroke&) { touch(state, scene); });
+  else if (scene.bodies.size() > 1)
     add("join", scene.interface ? "springs of the interface, implicit" : "bodies share one change of velocity",
         [&joint](State& state, const Stroke&) { joint.join(state); });
   add("advance", scene.pic_damping ? "points move (FLIP with a share of PIC, booked as damping)" : "points move (FLIP)",
@@ -237,6 +279,8 @@ std::vector<Stage> plan(const Scene& scene, Joint& joint) {
           move_points(state, scene, body);
         }
       });
+  if (!scene.rigids.empty())
+    add("push", "rigid bodies move", [&scene](State& state, const Stroke&) { move_rigids(state, scene); });
   add("piston", "the piston moves and its work is booked", [](State& state, const Stroke&) {
     state.piston.work += state.piston.force * state.piston.speed * state.step;
     state.piston.position += state.piston.speed * state.step;
@@ -249,10 +293,16 @@ double stable_step(const State& state, const Scene& scene) {
   double most = 0.0;  // transits of a cell per second
   for (const Body& body : state.bodies)
     each_batch(body, [&](const auto& law, const BodyPoints& points, std::size_t first) {
-      const Gradient F = load_gradient(body.points, first);
-      const Lanes speed = law.wave_speed(points) + std::abs(state.piston.speed);
-      const Lanes along = state.grid.inverse_cell_x / sqrt(F.xx * F.xx + F.yx * F.yx);
-      const Lanes across = state.grid.inverse_cell_y / sqrt(F.xy * F.xy + F.yy * F.yy);
+      Lanes speed = law.wave_speed(points) + std::abs(state.piston.speed);
+      Lanes along = all_lanes(state.grid.inverse_cell_x), across = all_lanes(state.grid.inverse_cell_y);
+      if (scene.contact) {
+        const Lanes vx = load(&body.points.velocity_x[first]), vy = load(&body.points.velocity_y[first]);
+        speed += sqrt(vx * vx + vy * vy);
+      } else {
+        const Gradient F = load_gradient(body.points, first);
+        along /= sqrt(F.xx * F.xx + F.yx * F.yx);
+        across /= sqrt(F.xy * F.xy + F.yy * F.yy);
+      }
       const Lanes transits = speed * (along > across ? along : across);
       for (std::size_t i = 0; i < lane_count; ++i) most = std::max(most, transits[i]);
     });
@@ -268,6 +318,11 @@ Totals totals(const State& state) {
     each_batch(body, [&](const auto& law, const BodyPoints& points, std::size_t first) {
       const Lanes volume = load(&p.volume[first]), vx = load(&p.velocity_x[first]), vy = load(&p.velocity_y[first]);
       all.volume += sum(volume);
+      all.mass += law.mass_density() * sum(volume);
+      all.momentum_x += law.mass_density() * sum(volume * vx);
+      all.momentum_y += law.mass_density() * sum(volume * vy);
+      all.moment_x += law.mass_density() * sum(volume * load(&p.x[first]));
+      all.moment_y += law.mass_density() * sum(volume * load(&p.y[first]));
       all.kinetic += 0.5 * law.mass_density() * sum(volume * (vx * vx + vy * vy));
       all.internal += sum(volume * law.energy(points));
       all.stress_xx += sum(volume * points.xx);

@@ -28,6 +28,9 @@ struct Totals {
   double volume = 0;       ///< reference volume, mm^2
   double stress_xx = 0;    ///< mean Kirchhoff stress along the piston's way
   double stress_yy = 0;
+  double mass = 0;
+  double momentum_x = 0, momentum_y = 0;  ///< tonne/s
+  double moment_x = 0, moment_y = 0;      ///< mass times position of its centre, tonne
 };
 Totals totals(const State& state);
 

@@ -149,7 +149,7 @@ ExitCode simulate_bodies(const Options& options, Document document) {
     return !StopOnInterrupt::asked();
   });
   if (terminal) fmt::print(stderr, "\r\033[K");
-  nlohmann::ordered_json json = forward::bodies::result_json(result);
+  nlohmann::ordered_json json = forward::bodies::result_json(result, scene);
   json["title"] = scene.title;
   json["scene"] = document.canonical();
   json["code_version"] = KERF_VERSION;

@@ -50,6 +50,22 @@ TEST(BodiesScene, BadInputIsSaidWithItsPlace) {
               HasSubstr("a body with a temperature"));
 }
 
+TEST(BodiesScene, BadContactIsSaidWithItsPlace) {
+  const std::string incline = shipped_text("incline");
+  EXPECT_THAT(complaint(replaced(incline, "friction = 0.3", "friction = -0.3")), HasSubstr("friction"));
+  EXPECT_THAT(complaint(replaced(incline, "[contact]", "[contact]\nnormal = \"MVQ\"")), HasSubstr("MVG"));
+  EXPECT_THAT(complaint(replaced(incline, "[contact]", "[contact]\nnormal = \"SN\"")), HasSubstr("lacks normal_x"));
+  EXPECT_THAT(complaint(replaced(incline, "[contact]", "[contact]\nnormal_x = 1")), HasSubstr("only normal = \"SN\""));
+  EXPECT_THAT(complaint(replaced(incline, "left = \"30.713 mm\"", "left = \"53 mm\"")), HasSubstr("does not fit"));
+  EXPECT_THAT(complaint(replaced(incline, "bottom = \"21.465 mm\"", "bottom = \"20 mm\"")),
+              HasSubstr("both hold the place"));
+  EXPECT_THAT(complaint(replaced(incline, "width = \"16 mm\"", "width = \"16 mm\"\nradius = \"3 mm\"")),
+              HasSubstr("\"center_x\" of its disc"));
+  EXPECT_THAT(complaint(replaced(incline, "[contact]\nfriction = 0.3", "")), HasSubstr("only through a [contact]"));
+  EXPECT_THAT(complaint(replaced(incline, "longest", "piston_speed = \"1 m/s\"\nlongest")),
+              HasSubstr("holds the piston still"));
+}
+
 std::vector<std::string> stages_of(const std::string& text) {
   const Scene scene = read_scene(Document::parse(text, "bodies.toml"));
   State state = lay_out(scene);
@@ -66,10 +82,13 @@ TEST(BodiesScene, AnAbsentEffectHasNoStageAndNoByte) {
               ElementsAre("project", "share", "strain", "accelerate", "join", "advance", "piston"));
   EXPECT_THAT(stages_of(shipped_text("carnot_gas") + "\n[conduction]\nconductivity = \"1 W/(m K)\"\n"),
               ElementsAre("project", "strain", "conduct", "accelerate", "advance", "piston"));
+  EXPECT_THAT(stages_of(shipped_text("incline")),
+              ElementsAre("project", "meet", "strain", "gravity", "accelerate", "touch", "advance", "push", "piston"));
   const State bar = lay_out(read_scene(Document::parse(shipped_text("interface_bar"), "bar.toml")));
   EXPECT_EQ(bar.bodies[0].points.temperature.capacity(), 0u);
   EXPECT_EQ(bar.bodies[0].points.memory.size(), 1u);
   EXPECT_EQ(bar.bodies[0].field.filtered.capacity(), 0u);
+  EXPECT_TRUE(bar.contact.presence.empty() && bar.contact.rigids.empty() && bar.contact.velocity.empty());
 }
 
 TEST(BodiesScene, BodiesFillTheirRectangles) {

@@ -1,0 +1,144 @@
+// Bodies in contact against closed forms.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "forward/bodies/contact.hpp"
+#include "forward/bodies/run.hpp"
+#include "forward/bodies/step.hpp"
+#include "tests/shipped_scene.hpp"
+
+namespace kerf::forward::bodies {
+namespace {
+
+using kerf::testing::replaced;
+using kerf::testing::shipped_text;
+
+BodiesResult result_of(const std::string& text) {
+  return run(read_scene(Document::parse(text, "scene.toml")));
+}
+
+double number(const BodiesResult& result, const char* name) {
+  return result.measures.at(name).get<double>();
+}
+
+/// The incline with its true normal.
+std::string incline(double friction) {
+  return replaced(
+      shipped_text("incline"), "friction = 0.3",
+      fmt::format("friction = {}\nnormal = \"SN\"\nnormal_x = -0.5\nnormal_y = 0.8660254037844386", friction));
+}
+
+TEST(BodiesContact, ABlockSlidesDownAnInclineAsCoulombSays) {
+  for (const double friction : {0.0, 0.15, 0.3, 0.45}) {
+    const BodiesResult result = result_of(incline(friction));
+    ASSERT_TRUE(result.accepted) << friction;
+    std::printf("mu = %.2f: acceleration off by %.2e g\n", friction, number(result, "acceleration_error"));
+    EXPECT_LT(number(result, "acceleration_error"), 5e-3) << friction;
+    const Reading& end = result.history.back();
+    // What a sliding block has lost to friction: mu N times its way.
+    const double along = -(end.velocity_x * std::cos(std::numbers::pi / 6) + end.velocity_y * 0.5);
+    if (friction > 0.0) {
+      const double way = 0.5 * along * end.time, weight = 1e-9 * 16 * 8 * 1e6;
+      EXPECT_NEAR(end.friction_heat / (friction * weight * std::cos(std::numbers::pi / 6) * way), 1.0, 0.02);
+    } else {
+      EXPECT_EQ(end.friction_heat, 0.0);
+    }
+  }
+}
+
+TEST(BodiesContact, NormalsFoundFromVolumesGiveTheSameAcceleration) {
+  for (const char* normal : {"MVG", "AVG"}) {
+    const BodiesResult result = result_of(
+        replaced(shipped_text("incline"), "friction = 0.3", fmt::format("friction = 0.3\nnormal = \"{}\"", normal)));
+    ASSERT_TRUE(result.accepted) << normal;
+    std::printf("%s: acceleration off by %.2e g\n", normal, number(result, "acceleration_error"));
+    EXPECT_LT(number(result, "acceleration_error"), 0.03) << normal;
+  }
+}
+
+TEST(BodiesContact, ABlockStaysIfFrictionIsAboveTheTangentAndElseDoesNot) {
+  const double tangent = std::tan(std::numbers::pi / 6);
+  // Damped, so that the weight, which comes on at once, does not make the block hop.
+  const auto damped = [&](double friction) {
+    return result_of(replaced(replaced(incline(friction), "rate = 0.02", "rate = 0.2"), "\"4 ms\"", "\"8 ms\""));
+  };
+  const BodiesResult above = damped(1.2 * tangent), below = damped(0.9 * tangent);
+  // Way along the slope in the second half, over that of a block without friction; 0 and 0.1 in the closed form, the
+  // latter with what the block gained while its weight came on.
+  const auto way = [](const BodiesResult& result) {
+    const std::size_t end = result.history.size() - 1, middle = end / 2;
+    const double mass = 16 * 8 * 1e-9, pull = 0.5e6;
+    const auto slid = [&](std::size_t i) { return result.history[i].gravity_work / (mass * pull); };
+    const double from = result.history[middle].time, to = result.history[end].time;
+    return (slid(end) - slid(middle)) / (0.5 * pull * (to * to - from * from));
+  };
+  std::printf("way over that without friction: %.4f above, %.4f below\n", way(above), way(below));
+  EXPECT_LT(way(above), 0.03);
+  EXPECT_GT(way(below), 0.1);
+  EXPECT_LT(way(below), 0.15);
+  EXPECT_LT(number(below, "acceleration_error"), 1e-2);
+}
+
+/// Two free blocks that hit each other askew and rub.
+std::string collision(double friction, const char* overlap) {
+  const auto body = [](double left, double bottom, double angle, double velocity, double density) {
+    return fmt::format(
+        "[[body]]\nlaw = \"hencky\"\nelastic_modulus = \"100 MPa\"\npoisson_ratio = 0.3\ndensity = \"{} kg/m^3\"\n"
+        "yield_stress = \"1000 MPa\"\nleft = \"{} mm\"\nbottom = \"{} mm\"\nwidth = \"8 mm\"\nheight = \"8 mm\"\n"
+        "angle = \"{} deg\"\nvelocity_x = \"{} m/s\"\nvelocity_y = \"{} m/s\"\n",
+        density, left, bottom, angle, velocity, -0.5 * velocity);
+  };
+  return fmt::format(
+             "title = \"collision\"\nmeasures = []\n[box]\nlength = \"40 mm\"\nheight = \"30 mm\"\ncell = \"0.5 mm\"\n"
+             "left = \"open\"\nright = \"open\"\nbottom = \"open\"\ntop = \"open\"\ncourant_number = 0.2\n"
+             "[contact]\nfriction = {}\noverlap = \"{}\"\n[[stroke]]\nlongest = \"0.5 ms\"\n",
+             friction, overlap) +
+         body(10, 10, 0, 10, 1000) + body(18.5, 9, 0, -8, 2000);
+}
+
+TEST(BodiesContact, ContactKeepsMomentumAndEnergy) {
+  for (const char* overlap : {"off", "position", "displacement"}) {
+    const Scene scene = read_scene(Document::parse(collision(0.3, overlap), "collision.toml"));
+    State state = lay_out(scene);
+    Joint joint(state, scene);
+    const Totals before = totals(state);
+    const std::vector<Stage> stages = plan(scene, joint);
+    bool met = false;
+    while (state.time < 5e-4) {
+      for (const Stage& stage : stages) stage.apply(state, scene.strokes[0]);
+      met |= !state.contact.touches.empty();
+      state.step = stable_step(state, scene);
+    }
+    ASSERT_TRUE(state.breakdown.empty()) << state.breakdown;
+    EXPECT_TRUE(met);
+    const Totals after = totals(state);
+    const double scale = 64 * 1e-9 * 1e4;
+    EXPECT_NEAR(after.momentum_x / scale, before.momentum_x / scale, 1e-12);
+    EXPECT_NEAR(after.momentum_y / scale, before.momentum_y / scale, 1e-12);
+    const double open = before.kinetic + before.internal - after.kinetic - after.internal -
+                        state.contact.friction_heat - state.contact.impact;
+    std::printf("%s: heat of friction %.3f, impact %.3f, open %.4f of the kinetic energy\n", overlap,
+                state.contact.friction_heat / before.kinetic, state.contact.impact / before.kinetic,
+                open / before.kinetic);
+    // Bodies that touch before they meet do so at nodes with next to no mass, and make energy there.
+    if (scene.contact->overlap == Overlap::position) {
+      EXPECT_LT(std::abs(open), 5e-3 * before.kinetic);
+    }
+    EXPECT_GT(state.contact.friction_heat, 0.01 * before.kinetic);
+    // They part again.
+    EXPECT_GT(totals(state).kinetic, 0.1 * before.kinetic);
+  }
+}
+
+TEST(BodiesContact, SurfacesThatTouchAreSeenApartByTheKernelsMean) {
+  // With many points the kernel's own integral: 2 int_0 x B / int_0 B = 13/16.
+  EXPECT_NEAR(distance_at_touch(0.5, 4), 13.0 / 16, 0.01);
+  EXPECT_NEAR(distance_at_touch(0.5, 2), 0.84375, 1e-12);  // points at 1/4, 3/4, 5/4
+  EXPECT_EQ(distance_at_touch(0.2, 2), distance_at_touch(0.8, 2));
+}
+
+}  // namespace
+}  // namespace kerf::forward::bodies
