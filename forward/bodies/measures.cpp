@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace kerf::forward::bodies {
 namespace {
@@ -186,6 +187,46 @@ void sliding(const BodiesResult& result, const Scene& scene, Json& json) {
   json["acceleration_error"] = std::abs(found - expected) / g;
 }
 
+void hertz(const BodiesResult& result, const Scene& scene, Json& json) {
+  double compliance = 0, curvature = 0, axis = 0;
+  for (const BodyPlan& body : scene.bodies) compliance += 1.0 / bar_modulus(body.law, false);
+  const auto add = [&](const Shape& shape) {
+    if (!shape.disc) return;
+    curvature += 1.0 / shape.disc->radius;
+    axis = shape.disc->x;
+  };
+  for (const BodyPlan& body : scene.bodies) add(body.shape);
+  for (const RigidPlan& rigid : scene.rigids) add(rigid.shape);
+  if (curvature == 0.0 || result.pressed.empty()) return;
+  const bool halved = axis == 0.0 && scene.walls[left] == Wall::roller;
+  const double cell = scene.length / static_cast<double>(std::lround(scene.length / scene.cell));
+  double sum = 0, moment = 0;
+  for (const BodiesResult::Pressure& node : result.pressed) {
+    sum += node.force;
+    moment += node.force * (node.x - axis) * (node.x - axis);
+  }
+  // A kernel spreads each force by a quarter of a cell squared.
+  const double half_width = 2.0 * std::sqrt(std::max(moment / sum - 0.25 * cell * cell, 0.0));
+  const double force = halved ? 2.0 * sum : sum;
+  const double expected_width = std::sqrt(4.0 * force * compliance / (std::numbers::pi * curvature));
+  const double expected_peak = std::sqrt(force * curvature / (std::numbers::pi * compliance));
+  // Over |x| < u a the mean pressure is (u sqrt(1 - u^2) + asin u)/(2 u) of the peak.
+  const double inner = std::max(1.0, std::floor(0.5 * expected_width / cell)) * cell, u = inner / expected_width;
+  double carried = 0;
+  for (const BodiesResult::Pressure& node : result.pressed)
+    if (std::abs(node.x - axis) < inner) carried += node.force;
+  const double mean = carried / (halved ? inner : 2.0 * inner);
+  const double peak = mean * 2.0 * u / (u * std::sqrt(1.0 - u * u) + std::asin(u));
+  json["force"] = force;
+  json["half_width"] = half_width;
+  json["closed_form_half_width"] = expected_width;
+  json["half_width_error"] = std::abs(half_width / expected_width - 1.0);
+  json["peak_pressure"] = peak;
+  json["closed_form_peak_pressure"] = expected_peak;
+  json["peak_pressure_error"] = std::abs(peak / expected_peak - 1.0);
+  json["cells_in_half_width"] = expected_width / cell;
+}
+
 }  // namespace
 
 Json measure(const BodiesResult& result, const Scene& scene) {
@@ -205,6 +246,9 @@ Json measure(const BodiesResult& result, const Scene& scene) {
         break;
       case Measure::sliding:
         sliding(result, scene, json);
+        break;
+      case Measure::hertz:
+        hertz(result, scene, json);
         break;
     }
   return json;

@@ -16,6 +16,9 @@ namespace kerf::forward::bodies {
 /// - sliding: acceleration (m/s^2) of the bodies' centre of mass along the lower side of the first rigid body over the
 ///   second half of the last stroke, that of a block on an incline, g (sin a - mu cos a), and acceleration_error, their
 ///   difference over g
+/// - hertz: of a cylinder pressed on a flat or on another, force (N/mm), half_width (mm) from the second moment of the
+///   nodal forces over the second half of the last stroke, peak_pressure (MPa) from their sum over the inner half, and
+///   their errors against what the force makes of them in Hertz's contact
 /// - modulus: effective_modulus along x of what lies in the box, and effective_modulus_error against bodies and
 ///   interface in series, 1/E = sum (l_i/L)/E_i + 1/(D_n L)
 nlohmann::ordered_json measure(const BodiesResult& result, const Scene& scene);

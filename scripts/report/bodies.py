@@ -21,6 +21,7 @@ class Bodies:
     results: dict
     history: dict
     cost: dict
+    pressed: dict
 
 
 def read_bodies(file):
@@ -28,7 +29,7 @@ def read_bodies(file):
         kept = json.loads(file.read_text(encoding="utf-8"))
         history = {key: np.array(values, dtype=float) for key, values in kept["history"].items()}
         return Bodies(kept["title"], kept["scene"], kept["code_version"], kept["accepted"], kept["refusals"],
-                      kept["results"] or {}, history, kept["cost"])
+                      kept["results"] or {}, history, kept["cost"], kept.get("pressed", {}))
     except (ValueError, KeyError, TypeError) as error:
         raise Unreadable(f"{file}: not what `kerf simulate -o` keeps of bodies ({error})") from error
 
@@ -69,12 +70,55 @@ def heat_picture(bodies):
     return svg(fig, "mean temperature against entropy")
 
 
+def pressed_picture(bodies):
+    """Nodal contact forces, as pressure along x; None where nothing touches. With Hertz's ellipse if it was measured."""
+    if not bodies.pressed:
+        return None
+    columns = {}
+    for x, force in zip(bodies.pressed["x"], bodies.pressed["force"]):
+        columns[x] = columns.get(x, 0.0) + force
+    x = np.array(sorted(columns))
+    if len(x) < 2:
+        return None
+    pressure = np.array([columns[at] for at in x]) / np.min(np.diff(x))
+    fig, axes = figure(860, 360)
+    axes.plot(x, pressure, "o", color=INK, markersize=4, label="nodes")
+    if "closed_form_half_width" in bodies.results:
+        half, peak = bodies.results["closed_form_half_width"], bodies.results["closed_form_peak_pressure"]
+        along = np.linspace(0, half, 200)
+        axes.plot(along, peak * np.sqrt(1 - (along / half) ** 2), color=WARM, linewidth=1.6, label="Hertz")
+    light_grid(axes)
+    axes.set(xlabel="x, mm", ylabel="contact force over length along x, MPa")
+    axes.legend(frameon=False)
+    return svg(fig, "pressure between the bodies")
+
+
+def velocity_picture(bodies):
+    """Speed of the bodies' centre of mass; None of scenes without contact."""
+    h = bodies.history
+    if "velocity_x" not in h:
+        return None
+    fig, axes = figure(860, 360)
+    axes.plot(h["time"] * 1e3, np.hypot(h["velocity_x"], h["velocity_y"]) / 1e3, color=INK, linewidth=1.6,
+              label="simulated")
+    if "closed_form_acceleration" in bodies.results:
+        axes.plot(h["time"] * 1e3, abs(bodies.results["closed_form_acceleration"]) * h["time"], color=WARM,
+                  linewidth=1.6, linestyle="--", label="closed form")
+    light_grid(axes)
+    axes.set(xlabel="time, ms", ylabel="speed of the centre of mass, m/s")
+    axes.legend(frameon=False)
+    return svg(fig, "speed of the bodies against time")
+
+
 def energy_picture(bodies):
     """The ledger against time."""
     h = bodies.history
     fig, axes = figure(860, 360)
-    for key, label, colour in [("piston_work", "work of the piston", WARM), ("heat", "heat taken in", ACCENT),
-                               ("internal", "internal energy", INK), ("residue", "residue", QUIET)]:
+    lines = [("piston_work", "work of the piston", WARM), ("heat", "heat taken in", ACCENT)]
+    if "rigid_work" in h:
+        h["pushed"] = h["rigid_work"] + h["gravity_work"]
+        lines = [("pushed", "work of rigid bodies and gravity", WARM), ("friction_heat", "heat of friction", ACCENT)]
+    for key, label, colour in lines + [("internal", "internal energy", INK), ("residue", "residue", QUIET)]:
         axes.plot(h["time"] * 1e3, h[key], color=colour, linewidth=1.6, label=label)
     light_grid(axes)
     axes.set(xlabel="time, ms", ylabel="energy per width, N mm/mm")

@@ -13,8 +13,16 @@ def page_of_bodies(bodies):
     section.warnings([prose(reason) for reason in bodies.refusals])
     section.facts([("verdict", chip("accepted") if bodies.accepted else chip("not accepted", "no"), "")] +
                   [(name.replace("_", " "), f"{value:.5g}".replace("-", "−"), "") for name, value in bodies.results.items()])
-    page.section("Force on the way").figure(drawing.force_picture(bodies), "Force of the piston on the bodies per "
-                                            "width, pulling positive, means between readings.")
+    velocity = drawing.velocity_picture(bodies)
+    if velocity:
+        page.section("Speed").figure(velocity, "Of the centre of mass of the bodies that deform.")
+    else:
+        page.section("Force on the way").figure(drawing.force_picture(bodies), "Force of the piston on the bodies per "
+                                                "width, pulling positive, means between readings.")
+    pressed = drawing.pressed_picture(bodies)
+    if pressed:
+        page.section("Where bodies touch").figure(pressed, "Normal forces of the nodes, summed across the box, means over "
+                                                           "the second half of the last stroke.")
     heat = drawing.heat_picture(bodies)
     if heat:
         page.section("Temperature and entropy").figure(heat, "Means over the bodies. Heat at constant temperature runs "

@@ -133,6 +133,27 @@ TEST(BodiesContact, ContactKeepsMomentumAndEnergy) {
   }
 }
 
+TEST(BodiesContact, ACylinderOnAFlatIsPressedAsHertzSays) {
+  // With 4 and 8 cells in the half width. The half width is no better with 8: there is no order to test.
+  struct Case {
+    const char* cell;
+    double width, peak;
+  };
+  for (const Case& at : {Case{"0.5", 0.04, 0.11}, Case{"0.25", 0.04, 0.02}}) {
+    const BodiesResult result =
+        result_of(replaced(shipped_text("hertz"), "cell = \"0.25", fmt::format("cell = \"{}", at.cell)));
+    std::printf("%.1f cells in the half width: it is off by %.4f, the peak pressure by %.4f\n",
+                number(result, "cells_in_half_width"), number(result, "half_width_error"),
+                number(result, "peak_pressure_error"));
+    EXPECT_LT(number(result, "half_width_error"), at.width);
+    EXPECT_LT(number(result, "peak_pressure_error"), at.peak);
+    const Reading& end = result.history.back();
+    EXPECT_NEAR(end.rigid_force_y / (0.5 * number(result, "force")), 1.0, 0.05);
+    EXPECT_LT(std::abs(end.residue()), 0.02 * end.rigid_work);
+    EXPECT_EQ(end.friction_heat, 0.0);
+  }
+}
+
 TEST(BodiesContact, SurfacesThatTouchAreSeenApartByTheKernelsMean) {
   // With many points the kernel's own integral: 2 int_0 x B / int_0 B = 13/16.
   EXPECT_NEAR(distance_at_touch(0.5, 4), 13.0 / 16, 0.01);
