@@ -77,7 +77,8 @@ struct Contact {
 
 /// What to read off the run: see bodies/measures.
 enum class Measure { cycle, rubber, expansion, modulus, sliding, hertz };
-inline constexpr std::array<const char*, 6> measure_names{"cycle", "rubber", "expansion", "modulus", "sliding", "hertz"};
+inline constexpr std::array<const char*, 6> measure_names{"cycle",   "rubber",  "expansion",
+                                                          "modulus", "sliding", "hertz"};
 
 struct Scene {
   std::string title;
