@@ -64,7 +64,8 @@ std::vector<Stage> plan(const Scene& scene) {
         });
   add("spread", "marker forces go to the nodes they were interpolated from", spread_marker_forces);
   if (spindle)
-    add("drive", "forces of the spindle on the core, and their work", [spindle](State& state) { spindle->drive(state); });
+    add("drive", "forces of the spindle on the core, and their work",
+        [spindle](State& state) { spindle->drive(state); });
   add("accelerate", "new grid velocities under the fixed boundary", accelerate);
   if (scene.xpic_damping) {
     add("filter", "what XPIC blends towards",

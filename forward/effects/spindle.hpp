@@ -2,13 +2,14 @@
 
 #include <vector>
 
-#include "forward/scene/spiral.hpp"
 #include "forward/mpm/state.hpp"
+#include "forward/scene/spiral.hpp"
 
 namespace kerf::forward {
 
 /// The spindle of a lathe: the log's core is held as a rigid body that turns, keeps pace with the tool and is fed
-/// towards it. Its work on the log is part of the tool's (in the lathe's frame it is all of it: the knife stands still).
+/// towards it. Its work on the log is part of the tool's (in the lathe's frame it is all of it: the knife stands
+/// still).
 class Spindle {
  public:
   explicit Spindle(const Scene& scene);

@@ -20,8 +20,8 @@ void add_pair_force(Crack& crack, std::size_t k, double x, double y) {
   crack.face[below].force_y[k] -= y;
 }
 
-/// From the centre of the nodes that a marker follows to the marker, mm. The kernel is weighted with masses and the face
-/// is where they end, so that they lie a third of a cell inside.
+/// From the centre of the nodes that a marker follows to the marker, mm. The kernel is weighted with masses and the
+/// face is where they end, so that they lie a third of a cell inside.
 struct Arm {
   double x, y;
 };
@@ -30,8 +30,8 @@ Arm arm(const State& state, const Face& face, Side side, std::size_t k, const Sp
   Arm sum{};
   for (int j = 0; j < 3; ++j)
     for (int i = 0; i < 3; ++i) {
-      const double share =
-          sx.weight(i) * sy.weight(j) * grid.side[side].mass[grid.node(sx.base + i, sy.base + j)] * face.inverse_mass[k];
+      const double share = sx.weight(i) * sy.weight(j) * grid.side[side].mass[grid.node(sx.base + i, sy.base + j)] *
+                           face.inverse_mass[k];
       sum.x -= share * (grid.origin_x + (sx.base + i) * grid.cell_x);
       sum.y -= share * (grid.origin_y + (sy.base + j) * grid.cell_y);
     }
@@ -184,7 +184,8 @@ void pull_faces(State& state, const Cohesive& cohesive) {
     const double rate_x = upper.velocity_x[k] - lower.velocity_x[k], rate_y = upper.velocity_y[k] - lower.velocity_y[k];
     const double work_I =
         0.5 * (normal_traction + crack.traction_normal[k]) * dt * (n_x * rate_x + n_y * rate_y) * length;
-    const double work_II = 0.5 * (shear_traction + crack.traction_shear[k]) * dt * (n_y * rate_x - n_x * rate_y) * length;
+    const double work_II =
+        0.5 * (shear_traction + crack.traction_shear[k]) * dt * (n_y * rate_x - n_x * rate_y) * length;
     state.work.mode_I += work_I;
     state.work.mode_II += work_II;
     crack.taken[k] += (work_I + work_II) / length;

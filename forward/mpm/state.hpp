@@ -150,14 +150,14 @@ struct Face {
 /// Marker pairs along the crack plane: entry k of one face is opposite entry k of the other.
 struct Crack {
   std::array<Face, 2> face;
-  std::vector<double> reference_x;  ///< along the path
+  std::vector<double> reference_x;                    ///< along the path
   std::vector<double> largest_normal, largest_shear;  ///< openings so far, mm
   std::vector<double> largest_share;                  ///< of the critical openings so far, where the laws are coupled
   std::vector<double> traction_normal, traction_shear;
   std::vector<double> taken;  ///< work of the tractions, N/mm
   std::vector<std::uint8_t> intact;
   double spacing = 0;
-  double front = 0;  ///< reference position of the foremost broken pair
+  double front = 0;              ///< reference position of the foremost broken pair
   std::optional<Spiral> spiral;  ///< that the path follows in a log; absent: the plane y = 0
   /// What a pair remembers; zero to begin with.
   std::array<std::vector<double>*, 6> memory() {

@@ -279,10 +279,11 @@ Log read_log(const Values& log, const Scene& scene) {
   const double depth = scene.cut.depth, radius = log.number("radius") - depth;
   const double core = radius - scene.window.below * depth;
   if (core < 3.0 * scene.cell())
-    throw InputError(fmt::format(
-        "{}: radius = {:.4g} mm leaves the spindle {:.4g} mm below a veneer of {:.4g} mm and window.below = {:g} depths "
-        "(allowed from three cells, {:.4g} mm)",
-        log.where("radius"), radius + depth, core, depth, scene.window.below, 3.0 * scene.cell()));
+    throw InputError(
+        fmt::format("{}: radius = {:.4g} mm leaves the spindle {:.4g} mm below a veneer of {:.4g} mm and window.below "
+                    "= {:g} depths "
+                    "(allowed from three cells, {:.4g} mm)",
+                    log.where("radius"), radius + depth, core, depth, scene.window.below, 3.0 * scene.cell()));
   const Spiral path(radius, depth);
   const double length = (scene.cut.travel + scene.window.ahead) * depth, longest = path.turn_length() - 2.0 * depth;
   if (length > longest)

@@ -8,9 +8,9 @@ namespace kerf::forward {
 /// Where the log stands: it rolls under the tool as a wheel on a rail above it, so that the material that meets the
 /// tip is at rest, as in a straight cut, and the axis keeps pace with the tool. Turning is counter-clockwise.
 struct Roll {
-  double x, y;               ///< its axis, mm
-  double speed_x, speed_y;   ///< of the axis, mm/s
-  double turn, spin;         ///< angle so far (rad) and angular velocity (rad/s)
+  double x, y;              ///< its axis, mm
+  double speed_x, speed_y;  ///< of the axis, mm/s
+  double turn, spin;        ///< angle so far (rad) and angular velocity (rad/s)
   double velocity_x(double at_y) const { return speed_x - spin * (at_y - y); }
   double velocity_y(double at_x) const { return speed_y + spin * (at_x - x); }
 };

@@ -38,10 +38,9 @@ ExpectedCost expected_cost(const Scene& scene, const State& state) {
   const auto window = scene.window;
   const double laid = window.ahead * (scene.base_height() + 1.0);
   const auto particles_until = [&](double depths) {
-    const double more =
-        scene.grips || scene.log
-            ? 0.0
-                    : mean_of_filling(depths, window.behind) * window.below + mean_of_filling(depths, window.above);
+    const double more = scene.grips || scene.log ? 0.0
+                                                 : mean_of_filling(depths, window.behind) * window.below +
+                                                       mean_of_filling(depths, window.above);
     return static_cast<double>(state.particles.begin[2]) * (1.0 + more / laid);
   };
   const double least = std::min(scene.steady_state.not_before, scene.cut.travel), most = scene.cut.travel;

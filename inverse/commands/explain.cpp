@@ -125,9 +125,8 @@ void print_cut(const Scene& scene) {
     fmt::print("{} {:g} mm is {} at {:g} m/s by a rigid tool with a rake angle of {:g} deg. The work is an\n",
                scene.log ? "A veneer of" : "A layer of", scene.cut.depth, scene.log ? "peeled off a log" : "cut",
                scene.cut.speed / 1e3, scene.tool.rake * degrees);
-  fmt::print(
-      "elastic-plastic solid in plane strain that separates along {}; the cohesive law passes on\n",
-      scene.log ? "a spiral" : "the plane y = 0");
+  fmt::print("elastic-plastic solid in plane strain that separates along {}; the cohesive law passes on\n",
+             scene.log ? "a spiral" : "the plane y = 0");
   fmt::print("at most {:g} MPa (mode I) and {:g} MPa (mode II), and takes {:g} and {:g} J/m^2 to break.\n\n",
              scene.cohesive.mode_I->strength(), scene.cohesive.mode_II->strength(),
              1e3 * scene.cohesive.mode_I->toughness(), 1e3 * scene.cohesive.mode_II->toughness());
