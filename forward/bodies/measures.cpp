@@ -178,9 +178,18 @@ void sliding(const BodiesResult& result, const Scene& scene, Json& json) {
   const double mu = scene.contact->friction;
   const double expected = std::copysign(std::max(0.0, std::abs(along) - mu * std::max(press, 0.0)), along);
   const Span span = span_of(result, scene.strokes.size() - 1);
-  const Reading &from = result.history[(span.first + span.last) / 2], &to = result.history[span.last];
-  const double found =
-      (c * (to.velocity_x - from.velocity_x) + s * (to.velocity_y - from.velocity_y)) / (to.time - from.time);
+  // Slope of the line through the readings.
+  double n = 0, t = 0, v = 0, tt = 0, tv = 0;
+  for (std::size_t i = (span.first + span.last) / 2; i <= span.last; ++i) {
+    const Reading& r = result.history[i];
+    const double speed = c * r.velocity_x + s * r.velocity_y;
+    n += 1.0;
+    t += r.time;
+    v += speed;
+    tt += r.time * r.time;
+    tv += r.time * speed;
+  }
+  const double found = (n * tv - t * v) / (n * tt - t * t);
   const double g = std::hypot(scene.gravity->x, scene.gravity->y);
   json["acceleration"] = found / 1e3;
   json["closed_form_acceleration"] = expected / 1e3;

@@ -13,9 +13,10 @@ namespace kerf::forward::bodies {
 /// - rubber: of one ideal rubber, stroke 1 isothermal: heat_over_work, heat given off over work taken in (1: dq = -dw);
 ///   first adiabatic stroke: adiabatic_temperature_error against T exp((w - w_0)/(c T_0)) of an incompressible strip,
 ///   and adiabatic_over_isothermal_modulus, chords over its second half, with the closed form beside it
-/// - sliding: acceleration (m/s^2) of the bodies' centre of mass along the lower side of the first rigid body over the
-///   second half of the last stroke, that of a block on an incline, g (sin a - mu cos a), and acceleration_error, their
-///   difference over g
+/// - sliding: acceleration (m/s^2) of the bodies' centre of mass along the lower side of the first rigid body, fitted
+/// to
+///   the second half of the last stroke, that of a block on an incline, g (sin a - mu cos a), and acceleration_error,
+///   their difference over g
 /// - hertz: of a cylinder pressed on a flat or on another, force (N/mm), half_width (mm) from the second moment of the
 ///   nodal forces over the second half of the last stroke, peak_pressure (MPa) from their sum over the inner half, and
 ///   their errors against what the force makes of them in Hertz's contact
