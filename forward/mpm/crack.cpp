@@ -181,7 +181,10 @@ void pull_faces(State& state, const Cohesive& cohesive) {
     largest_normal = std::max(largest_normal, opening);
     largest_shear = std::max(largest_shear, std::abs(shear));
     // Trapezoid over the step: the openings moved with these very velocities.
-    const double rate_x = upper.velocity_x[k] - lower.velocity_x[k], rate_y = upper.velocity_y[k] - lower.velocity_y[k];
+    // Openings are told by one who turns with the log.
+    const double turn_x = -state.spin * part_y, turn_y = state.spin * part_x;
+    const double rate_x = upper.velocity_x[k] - lower.velocity_x[k] - turn_x;
+    const double rate_y = upper.velocity_y[k] - lower.velocity_y[k] - turn_y;
     const double work_I =
         0.5 * (normal_traction + crack.traction_normal[k]) * dt * (n_x * rate_x + n_y * rate_y) * length;
     const double work_II =
@@ -195,8 +198,11 @@ void pull_faces(State& state, const Cohesive& cohesive) {
       break_bond(state, cohesive, k);
       continue;
     }
-    add_pair_force(crack, k, -(n_y * shear_traction + n_x * normal_traction) * length,
-                   -(n_y * normal_traction - n_x * shear_traction) * length);
+    const double force_x = -(n_y * shear_traction + n_x * normal_traction) * length;
+    const double force_y = -(n_y * normal_traction - n_x * shear_traction) * length;
+    add_pair_force(crack, k, force_x, force_y);
+    // Tractions that do not point along the opening are a couple, which the spindle bears.
+    state.work.tool += (force_x * turn_x + force_y * turn_y) * dt;
   }
 }
 
