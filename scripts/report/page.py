@@ -122,7 +122,7 @@ def prose(text):
     """Plain text from a result, with its symbols set as symbols."""
     text = re.sub(r"\b\d(\.\d+)?e\+\d+\b", lambda m: integer(float(m[0])), text)
     text = text.replace("J/m^2", "J/m²").replace("+-", "±")
-    parts = re.split(r"\b([FG])_([a-zA-Z])\b|(chi2)", text)
+    parts = re.split(r"\b([FGσ])_([a-zA-Z])\b|(chi2)", text)
     out = Markup("")
     ends = [None]
     for plain, letter, index, square in zip(parts[0::4], parts[1::4] + ends, parts[2::4] + ends, parts[3::4] + ends):
