@@ -16,6 +16,7 @@ sys.path.insert(0, str(ROOT / "scripts"))
 import numpy as np  # noqa: E402
 from matplotlib.patches import Circle, Polygon  # noqa: E402
 from PIL import Image  # noqa: E402
+from report.bodies import draw_pressed, draw_velocity, read_bodies  # noqa: E402
 from report.cut import fill_between_particles, read_cut, tool_outlines  # noqa: E402
 from report.study import draw_work_precision, legend_of, read_study  # noqa: E402
 from report.style import ACCENT, INK, QUIET, SAND, STRAIN, WARM, figure, light_grid  # noqa: E402
@@ -355,6 +356,16 @@ def bodies(results):
     return fig
 
 
+def contact(results):
+    """A block on an incline and a cylinder on a flat."""
+    fig, axes = figure(980, 330, 1, 2)
+    for ax, name, title, draw in [(axes[0], "incline", "block on an incline", draw_velocity),
+                                  (axes[1], "hertz", "cylinder on a flat", draw_pressed)]:
+        draw(ax, read_bodies(results / f"{name}.json"))
+        ax.set_title(title)
+    return fig
+
+
 def work_precision(results):
     """Error against cost, one knob at a time, of the studies that were run."""
     titles = {"study_polymer": "polymer, verification_45", "study_wood": "wood, wood_rl"}
@@ -373,7 +384,8 @@ def work_precision(results):
 FIGURES = {"plane_chips": (chips, "plane_mouth"), "talk_forces": (talk, "talk"), "talk_effects": (effects, "talk_rake"),
            "bottom_force": (bottom, "talk_edge"), "wood_forces": (wood, "wood_rl"), "plane_forces": (plane, "plane_m12"),
            "laws": (laws, "laws"), "work_precision": (work_precision, "study_polymer"),
-           "veneer": (veneer, "veneer.h5"), "bodies": (bodies, "carnot_gas.json")}
+           "veneer": (veneer, "veneer.h5"), "contact": (contact, "hertz.json"),
+           "bodies": (bodies, "carnot_gas.json")}
 
 
 def main():

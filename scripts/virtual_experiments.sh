@@ -49,7 +49,7 @@ study study_wood wood_rl resolution.cells_through_chip=x0.75,x1.25 cut.speed=x2,
 build/release/kerf simulate "$scenes/veneer.toml" -o results/experiments/veneer.h5
 
 # The same particles as an engine, a rubber band and a glued bar.
-for name in carnot_gas carnot_tungsten rubber_gough; do
+for name in carnot_gas carnot_tungsten rubber_gough incline hertz; do
   build/release/kerf simulate "$scenes/$name.toml" -o "results/experiments/$name.json"
 done
 for stiffness in 1 3 10 30 100 1e3 1e5 1e7 1e9; do

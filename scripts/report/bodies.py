@@ -70,18 +70,17 @@ def heat_picture(bodies):
     return svg(fig, "mean temperature against entropy")
 
 
-def pressed_picture(bodies):
-    """Nodal contact forces, as pressure along x; None where nothing touches. With Hertz's ellipse if it was measured."""
+def draw_pressed(axes, bodies):
+    """Nodal contact forces, as pressure along x, with Hertz's ellipse if it was measured; False where nothing touches."""
     if not bodies.pressed:
-        return None
+        return False
     columns = {}
     for x, force in zip(bodies.pressed["x"], bodies.pressed["force"]):
         columns[x] = columns.get(x, 0.0) + force
     x = np.array(sorted(columns))
     if len(x) < 2:
-        return None
+        return False
     pressure = np.array([columns[at] for at in x]) / np.min(np.diff(x))
-    fig, axes = figure(860, 360)
     axes.plot(x, pressure, "o", color=INK, markersize=4, label="nodes")
     if "closed_form_half_width" in bodies.results:
         half, peak = bodies.results["closed_form_half_width"], bodies.results["closed_form_peak_pressure"]
@@ -90,15 +89,20 @@ def pressed_picture(bodies):
     light_grid(axes)
     axes.set(xlabel="x, mm", ylabel="contact force over length along x, MPa")
     axes.legend(frameon=False)
-    return svg(fig, "pressure between the bodies")
+    return True
 
 
-def velocity_picture(bodies):
-    """Speed of the bodies' centre of mass; None of scenes without contact."""
+def pressed_picture(bodies):
+    """None where nothing touches."""
+    fig, axes = figure(860, 360)
+    return svg(fig, "pressure between the bodies") if draw_pressed(axes, bodies) else None
+
+
+def draw_velocity(axes, bodies):
+    """Speed of the bodies' centre of mass; False of scenes without contact."""
     h = bodies.history
     if "velocity_x" not in h:
-        return None
-    fig, axes = figure(860, 360)
+        return False
     axes.plot(h["time"] * 1e3, np.hypot(h["velocity_x"], h["velocity_y"]) / 1e3, color=INK, linewidth=1.6,
               label="simulated")
     if "closed_form_acceleration" in bodies.results:
@@ -107,7 +111,13 @@ def velocity_picture(bodies):
     light_grid(axes)
     axes.set(xlabel="time, ms", ylabel="speed of the centre of mass, m/s")
     axes.legend(frameon=False)
-    return svg(fig, "speed of the bodies against time")
+    return True
+
+
+def velocity_picture(bodies):
+    """None of scenes without contact."""
+    fig, axes = figure(860, 360)
+    return svg(fig, "speed of the bodies against time") if draw_velocity(axes, bodies) else None
 
 
 def energy_picture(bodies):

@@ -3,6 +3,17 @@
 from . import bodies as drawing
 from .page import Page, chip, integer, number, prose
 
+# Of what a scene is for; what is not here is a ratio.
+UNITS = {"heat_taken": "N", "work_given": "N", "first_step_temperature_change": "K", "lowest_temperature": "K",
+         "highest_temperature": "K", "adiabatic_temperature_rise": "K", "effective_modulus": "MPa", "perfect_modulus": "MPa",
+         "closed_form_modulus": "MPa", "interface_stiffness": "MPa/mm", "acceleration": "m/s²",
+         "closed_form_acceleration": "m/s²", "force": "N/mm", "half_width": "mm", "closed_form_half_width": "mm",
+         "peak_pressure": "MPa", "closed_form_peak_pressure": "MPa"}
+
+
+def _with_unit(name, value):
+    return " ".join([f"{value:.5g}".replace("-", "−"), UNITS.get(name, "")]).rstrip()
+
 
 def page_of_bodies(bodies):
     headline = "The experiment ran through and passed its tests." if bodies.accepted else \
@@ -12,7 +23,7 @@ def page_of_bodies(bodies):
     section = page.section("What it says")
     section.warnings([prose(reason) for reason in bodies.refusals])
     section.facts([("verdict", chip("accepted") if bodies.accepted else chip("not accepted", "no"), "")] +
-                  [(name.replace("_", " "), f"{value:.5g}".replace("-", "−"), "") for name, value in bodies.results.items()])
+                  [(name.replace("_", " "), _with_unit(name, value), "") for name, value in bodies.results.items()])
     velocity = drawing.velocity_picture(bodies)
     if velocity:
         page.section("Speed").figure(velocity, "Of the centre of mass of the bodies that deform.")
