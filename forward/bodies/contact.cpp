@@ -237,11 +237,13 @@ double distance_at_touch(double share, int points_per_cell) {
       for (std::size_t k = 0; k <= size; ++k) {
         const double s = (1.5 - 0.5 * gap) * (1.0 - static_cast<double>(k) / size);
         double near = 0, near_moment = 0, far = 0, far_moment = 0;
-        for (double x = s + 0.5 * gap; x < 1.5 + gap; x += gap) {
+        for (int i = 0; i <= 2 * n; ++i) {
+          const double x = s + (i + 0.5) * gap;
           far += kernel(x);
           far_moment += x * kernel(x);
         }
-        for (double x = s - 0.5 * gap; x > -1.5 - gap; x -= gap) {
+        for (int i = 0; i <= 4 * n; ++i) {
+          const double x = s - (i + 0.5) * gap;
           near += kernel(x);
           near_moment += x * kernel(x);
         }

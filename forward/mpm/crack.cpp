@@ -137,8 +137,8 @@ std::optional<Overlap> overlap_on_spiral(const State& state, std::size_t k, std:
   const Face &upper = crack.face[above], &lower = crack.face[below];
   const double reach = 2.0 * most, away_x = upper.x[k] - lower.x[k], away_y = upper.y[k] - lower.y[k];
   if (away_x * away_x + away_y * away_y > reach * reach) return {};
-  const auto [n_x, n_y] = crack.normal(k, state.tool.x);
-  const auto along = [&](std::size_t i) { return n_y * (upper.x[k] - lower.x[i]) - n_x * (upper.y[k] - lower.y[i]); };
+  const Spiral::Direction n = crack.normal(k, state.tool.x);
+  const auto along = [&](std::size_t i) { return n.y * (upper.x[k] - lower.x[i]) - n.x * (upper.y[k] - lower.y[i]); };
   std::size_t j = std::min(k, last);
   while (j > 0 && along(j) < 0.0) --j;
   while (j < last && along(j + 1) > 0.0) ++j;
@@ -147,12 +147,12 @@ std::optional<Overlap> overlap_on_spiral(const State& state, std::size_t k, std:
     return {};
   const double t = along(j) / run;
   const auto above_face = [&](std::size_t i) {
-    return n_x * (upper.x[k] - lower.x[i]) + n_y * (upper.y[k] - lower.y[i]);
+    return n.x * (upper.x[k] - lower.x[i]) + n.y * (upper.y[k] - lower.y[i]);
   };
   const double slope = (above_face(j) - above_face(j + 1)) / run;
   const double depth = -(above_face(j) + t * (above_face(j + 1) - above_face(j)));
   if (depth <= 0.0 || depth > most) return {};
-  return Overlap{j, t, n_x - slope * n_y, n_y + slope * n_x, depth};
+  return Overlap{j, t, n.x - slope * n.y, n.y + slope * n.x, depth};
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
-// How much of the cohesive strength does a cut show? A synthetic experiment by simulation (3 cells, 20 m/s: the forces of
-// a draft, but smooth) whose cutting forces at one rake say nothing of it, and which learns of it with every further kind
-// of measurement, as much as the Jacobian lets expect. What this does not prove: that real bonds are cubic.
+// How much of the cohesive strength does a cut show? A synthetic experiment by simulation (3 cells, 20 m/s: the forces
+// of a draft, but smooth) whose cutting forces at one rake say nothing of it, and which learns of it with every further
+// kind of measurement, as much as the Jacobian lets expect. What this does not prove: that real bonds are cubic.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -60,7 +60,8 @@ class CohesiveStrength : public ::testing::Test {
   CohesiveStrength()
       : scene_(testing::replaced(testing::coarse_scene, "cells_through_chip = 4", "cells_through_chip = 3")),
         journal_(folder_ / "journal.jsonl"),
-        database_(journal_, "test", [](const forward::Scene& scene) { return forward::run(scene); }, 2) {}
+        database_(
+            journal_, "test", [](const forward::Scene& scene) { return forward::run(scene); }, 2) {}
 
   /// The truth as it is simulated, without scatter, at some of the places.
   std::string measured(const std::vector<Place>& places) {

@@ -5,8 +5,8 @@
 #include "inverse/child_runs.hpp"
 #include "tests/unit/synthetic_cut.hpp"
 
-// The Slurm backend against an sbatch and a scancel of our own, which stand first on the PATH. What this does not prove:
-// that a real Slurm takes the same options; scripts/slurm_test.sh does.
+// The Slurm backend against an sbatch and a scancel of our own, which stand first on the PATH. What this does not
+// prove: that a real Slurm takes the same options; scripts/slurm_test.sh does.
 namespace kerf {
 namespace {
 
