@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -49,7 +50,12 @@ std::map<std::string, double> instructions() {
 TEST(Cost, AnAbsentEffectRunsNoInstruction) {
   if (std::string(KERF_COST_PROBE).empty() || std::system("command -v valgrind >/dev/null") != 0)
     GTEST_SKIP() << "valgrind counts the instructions, and is not installed (scripts/install-deps.sh)";
-  const std::map<std::string, double> count = instructions();
+  std::map<std::string, double> count = instructions();
+  ASSERT_EQ(count.size(), 13u);
+  // Where the system lays memory can cost the first case some thousand instructions, once in many runs; a stage or a
+  // field too many costs them every time.
+  const auto differ = [&] { return std::abs(count.at("plain") / count.at("by_hand") - 1.0) > 2e-4; };
+  if (differ()) count = instructions();
   ASSERT_EQ(count.size(), 13u);
   for (const auto& [name, per_particle_step] : count)
     std::printf("%-14s %8.1f instructions per particle-step\n", name.c_str(), per_particle_step);
