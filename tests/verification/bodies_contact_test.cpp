@@ -9,20 +9,13 @@
 #include "forward/bodies/run.hpp"
 #include "forward/bodies/step.hpp"
 #include "tests/shipped_scene.hpp"
+#include "tests/verification/bodies_result.hpp"
 
 namespace kerf::forward::bodies {
 namespace {
 
 using kerf::testing::replaced;
 using kerf::testing::shipped_text;
-
-BodiesResult result_of(const std::string& text) {
-  return run(read_scene(Document::parse(text, "scene.toml")));
-}
-
-double number(const BodiesResult& result, const char* name) {
-  return result.measures.at(name).get<double>();
-}
 
 std::string incline(double friction) {
   return replaced(shipped_text("incline"), "friction = 0.3", fmt::format("friction = {}", friction));

@@ -11,20 +11,13 @@
 
 #include "forward/bodies/step.hpp"
 #include "tests/shipped_scene.hpp"
+#include "tests/verification/bodies_result.hpp"
 
 namespace kerf::forward::bodies {
 namespace {
 
 using kerf::testing::replaced;
 using kerf::testing::shipped_text;
-
-BodiesResult result_of(const std::string& text) {
-  return run(read_scene(Document::parse(text, "scene.toml")));
-}
-
-double number(const BodiesResult& result, const char* name) {
-  return result.measures.at(name).get<double>();
-}
 
 TEST(Bodies, AnIdealGasReachesCarnotsEfficiency) {
   const BodiesResult result = result_of(shipped_text("carnot_gas"));
