@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "inverse/seen_slopes.hpp"
 #include "inverse/start.hpp"
 #include "inverse/statement.hpp"
 
@@ -30,18 +31,20 @@ Fit conclude(const Job& job, const Objective& objective, SearchResult found) {
           .fitted_errors = {},
           .at_jump = found.model ? found.model->at_jump() : CutMask(),
           .resampling = {},
-          .has_slopes = found.model.has_value(),
+          .model = {},
           .converged = found.converged,
           .reason = std::move(found.reason)};
   if (objective.misfit().edge_force()) fit.share = objective.misfit().edge_force()->cutting_share;
   fit.residuals = objective.misfit().residuals(fit.at);
   if (!found.model) return fit;
   const Misfit& misfit = objective.misfit();
-  fit.identifiability = identify(*found.model, misfit, objective.space(), job.derived);
-  add_profiles(fit.identifiability, *found.model, misfit, objective.space(), job.derived);
-  fit.error_budget = error_budget(fit.identifiability, misfit, found.model->known());
-  fit.fitted_errors = fitted_errors(fit.identifiability, *found.model, misfit, objective.space());
-  fit.resampling = resample(*found.model, misfit, objective.space(), job);
+  fit.model = seen_slopes(*found.model, misfit);
+  const LocalModel& model = *fit.model;
+  fit.identifiability = identify(model, misfit, objective.space(), job.derived);
+  add_profiles(fit.identifiability, model, misfit, objective.space(), job.derived);
+  fit.error_budget = error_budget(fit.identifiability, misfit, model.known());
+  fit.fitted_errors = fitted_errors(fit.identifiability, model, misfit, objective.space());
+  fit.resampling = resample(model, misfit, objective.space(), job);
   return fit;
 }
 
@@ -70,6 +73,7 @@ class Calibrator {
     if (objective_.failing_share(first) > job_.budget.failing_share) return give_up(std::move(first));
     misfit_.include_simulation_errors(first);
     if (job_.optimiser.audit) audit(first);
+    result_.choice = objective_.choice();
 
     // The differences at the end, from which the errors come, are paid for in advance.
     const std::size_t reserve = job_.cuts.size() * job_.free.size();
@@ -114,6 +118,7 @@ class Calibrator {
       if (!choice.step_given) choice.step = result_.audit->step;
       if (!choice.noise_given) {
         choice.noise = result_.audit->noise;
+        choice.roughness = result_.audit->roughness.value_or(choice.noise);
         choice.noise_measured = result_.audit->measured;
       }
       objective_.choose(choice);

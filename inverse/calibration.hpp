@@ -26,7 +26,7 @@ struct Fit {
   Observations fitted_errors;                               ///< see fitted_errors(); empty without slopes
   CutMask at_jump;  ///< cuts within a difference step of another branch; empty without slopes
   Resampling resampling;
-  bool has_slopes = false;  ///< false: the budget did not allow the differences that errors need
+  std::optional<LocalModel> model;  ///< seen_slopes() about `at`; none: the budget did not allow the differences
   bool converged = false;
   std::string reason;
 };
@@ -38,6 +38,7 @@ struct Calibration {
   std::vector<TraceEntry> trace;
   Eigen::VectorXd start;
   std::string start_origin;         ///< where the start values come from, in words
+  OptimiserChoice choice;           ///< as the job says, or as the audit found
   std::optional<NoiseAudit> audit;  ///< none: the job did not ask for it or the budget did not cover it
   double failing_share = 0;         ///< of the cuts at the estimate
   bool partial = false;             ///< stopped by the user: the best point so far, usually without errors

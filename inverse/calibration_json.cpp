@@ -103,7 +103,7 @@ Json observable(const Job& job, const Fit& fit, const Misfit& misfit, std::size_
              {"simulated", in_unit(all[k].value, unit)},
              {"simulated_se", in_unit(all[k].standard_error, unit)},
              {"fitted", in_unit(fitted(row, column), unit)}};
-  if (fit.has_slopes && fit.at.usable[index]) entry["fitted_se"] = in_unit(fit.fitted_errors(row, column), unit);
+  if (fit.model && fit.at.usable[index]) entry["fitted_se"] = in_unit(fit.fitted_errors(row, column), unit);
   const std::optional<Estimate>& measured = job.cuts[index].measured[k];
   if (!measured) return entry;
   entry["measured"] = in_unit(measured->value, unit);
@@ -270,7 +270,7 @@ Json calibration_json(const Job& job, const Calibration& calibration, const Cali
   result["wall_s"] = cost.wall_seconds;
   result["noise_audit"] = calibration.audit ? noise_audit(*calibration.audit, job.optimiser) : Json(nullptr);
   result["identifiability"] = identifiability(fit.identifiability);
-  if (fit.has_slopes)
+  if (fit.model)
     result["error_budget"] = error_budget(fit);
   else
     result["stopped_at"] = where_it_stopped(job, fit);

@@ -325,7 +325,7 @@ Job read_job(const fs::path& file, const std::string& name, const Locate& locate
   job.optimiser.step_given = optimiser.has("step");
   job.optimiser.noise_given = optimiser.has("noise");
   if (optimiser.has("step")) job.optimiser.step = optimiser.number("step");
-  if (optimiser.has("noise")) job.optimiser.noise = optimiser.number("noise");
+  if (optimiser.has("noise")) job.optimiser.noise = job.optimiser.roughness = optimiser.number("noise");
   job.optimiser.audit =
       optimiser.has("audit") ? optimiser.flag("audit") : !optimiser.has("step") || !optimiser.has("noise");
   job.coarse = read_coarse(contents, base);

@@ -3,10 +3,17 @@
 #include <algorithm>
 
 namespace kerf::inverse {
+namespace {
+
+constexpr double usual_curvature =
+    0.5;  // of ln(force), per square of a search coordinate: what slopes may have changed
+
+}  // namespace
 
 LocalModel::LocalModel(Evaluation base)
     : base_(std::move(base)), has_slopes_(base_.usable.size(), true), at_jump_(base_.usable.size(), false) {
   slopes_.fill(Eigen::MatrixXd::Zero(base_.simulated.rows(), base_.point.size()));
+  slope_errors_ = slopes_;
 }
 
 double LocalModel::change(Eigen::Index cut, Eigen::Index observable, double simulated) const {
@@ -17,11 +24,13 @@ double LocalModel::change(Eigen::Index cut, Eigen::Index observable, double simu
 LocalModel LocalModel::by_differences(Objective& objective, const Evaluation& base) {
   const ParameterSpace& space = objective.space();
   LocalModel model(base);
+  model.roughness_ = objective.choice().roughness;
   struct Wanted {
     std::size_t cut;
     Eigen::Index parameter;
-    int sides = 0;         ///< differences taken so far
-    bool crossed = false;  ///< the branch changed: shorter steps may stay on it
+    int sides = 0;                           ///< differences taken so far
+    double inverse = 0, inverse_square = 0;  ///< sums over their steps
+    bool crossed = false;                    ///< the branch changed: shorter steps may stay on it
   };
   std::vector<Wanted> wanted;
   for (Eigen::Index j = 0; j < space.dimension(); ++j)
@@ -62,11 +71,24 @@ LocalModel LocalModel::by_differences(Objective& objective, const Evaluation& ba
         double& mean = model.slopes_[static_cast<std::size_t>(k)](row, j);
         mean += (model.change(row, k, simulated[k]) / (probes[p].point[j] - base.point[j]) - mean) / (slope.sides + 1);
       }
+      const double step = probes[p].point[j] - base.point[j];
+      slope.inverse += 1 / step;
+      slope.inverse_square += 1 / (step * step);
       ++slope.sides;
     }
   }
-  for (const Wanted& slope : wanted)
-    if (slope.sides == 0) model.has_slopes_[slope.cut] = false;
+  for (const Wanted& slope : wanted) {
+    if (slope.sides == 0) {
+      model.has_slopes_[slope.cut] = false;
+      continue;
+    }
+    // Every difference has a roughness of its own at its far end, and that of the base in common with the others.
+    const double rough = std::sqrt(slope.inverse_square + slope.inverse * slope.inverse) / slope.sides;
+    const auto row = static_cast<Eigen::Index>(slope.cut);
+    for (Eigen::Index k = 0; k < base.simulated.cols(); ++k)
+      model.slope_errors_[static_cast<std::size_t>(k)](row, slope.parameter) =
+          rough * objective.choice().roughness * (is_logarithmic(k) ? 1 : typical_size(base.simulated, row, k));
+  }
   return model;
 }
 
@@ -83,15 +105,22 @@ void LocalModel::learn(const Evaluation& other) {
   const Eigen::VectorXd step = other.point - base_.point;
   const double length2 = step.squaredNorm();
   if (length2 == 0) return;
+  const double told = 1 / (1 + 2 * std::pow(roughness_ / (0.5 * usual_curvature * length2), 2));
   for (std::size_t cut = 0; cut < base_.runs.size(); ++cut) {
     if (!base_.usable[cut] || !other.usable[cut] || base_.runs[cut].branch != other.runs[cut].branch) continue;
     const auto row = static_cast<Eigen::Index>(cut);
     for (std::size_t k = 0; k < observable_count; ++k) {
       const auto column = static_cast<Eigen::Index>(k);
       const double surprise = change(row, column, other.simulated(row, column)) - slopes_[k].row(row).dot(step);
-      if (std::isfinite(surprise)) slopes_[k].row(row) += surprise / length2 * step.transpose();
+      if (std::isfinite(surprise)) slopes_[k].row(row) += told * surprise / length2 * step.transpose();
     }
   }
+}
+
+LocalModel LocalModel::scaled(const Eigen::MatrixXd& share) const {
+  LocalModel result = *this;
+  for (Eigen::MatrixXd& slopes : result.slopes_) slopes *= share;
+  return result;
 }
 
 void LocalModel::move_to(const Evaluation& other) {

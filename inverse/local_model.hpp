@@ -41,7 +41,8 @@ class LocalModel {
     return is_logarithmic(observable) ? here * exp(change) : here + change;
   }
 
-  /// Makes the model agree with `other` by the smallest change of the slopes.
+  /// Makes the model agree with `other` by the smallest change of the slopes, as far as the surprise is not likelier to
+  /// be the roughness of the two than a curved response.
   void learn(const Evaluation& other);
   /// The same slopes about a run of another fidelity: never fresh.
   void borrow_for(const Evaluation& other) {
@@ -50,6 +51,12 @@ class LocalModel {
   }
   /// d ln F_c, d F_t or d ln(chip ratio) by a search coordinate: cuts x parameters.
   const Eigen::MatrixXd& slopes(Eigen::Index observable) const { return slopes_[static_cast<std::size_t>(observable)]; }
+  /// Standard errors of the slopes, from how rough the simulated values are over the steps of their differences.
+  const Eigen::MatrixXd& slope_errors(Eigen::Index observable) const {
+    return slope_errors_[static_cast<std::size_t>(observable)];
+  }
+  /// With every slope by the coordinates replaced by its product with `share`: parameters x parameters.
+  LocalModel scaled(const Eigen::MatrixXd& share) const;
   static bool is_logarithmic(Eigen::Index observable) { return is_positive(static_cast<std::size_t>(observable)); }
 
   /// The same slopes about another simulated point.
@@ -64,7 +71,8 @@ class LocalModel {
   double change(Eigen::Index cut, Eigen::Index observable, double simulated) const;
 
   Evaluation base_;
-  std::array<Eigen::MatrixXd, observable_count> slopes_;  ///< cuts x parameters
+  std::array<Eigen::MatrixXd, observable_count> slopes_, slope_errors_;  ///< cuts x parameters
+  double roughness_ = 0;                                                 ///< of the simulated values, relative
   CutMask has_slopes_, at_jump_;
   bool fresh_ = true;
 };

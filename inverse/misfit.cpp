@@ -49,6 +49,11 @@ Eigen::RowVectorXd observations(const RunRecord& run) {
   return row;
 }
 
+double typical_size(const Observations& simulated, Eigen::Index cut, Eigen::Index observable) {
+  const double size = std::abs(simulated(cut, observable));
+  return observable == F_t ? std::max(size, 0.1 * simulated(cut, F_c)) : size;
+}
+
 Misfit::Misfit(const Job& job, const ParameterSpace& space) : space_(&space), edge_force_(job.edge_force) {
   const auto columns = static_cast<Eigen::Index>(observable_count);
   measured_ = weights_ = Observations::Zero(rows(job.cuts), columns);

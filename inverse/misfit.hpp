@@ -37,6 +37,9 @@ struct Evaluation {
 
 Eigen::RowVectorXd observations(const RunRecord& run);
 
+/// What a relative roughness of an observable is a share of: its value, or F_c/10 where F_t is smaller.
+double typical_size(const Observations& simulated, Eigen::Index cut, Eigen::Index observable);
+
 /// What is left between measurement and simulation once the edge force is chosen best.
 struct Residuals {
   Eigen::VectorXd weighted;  ///< cut by cut, observable by observable, 0 where nothing is compared; then the priors.

@@ -76,8 +76,7 @@ class Auditor {
   std::vector<double> shares(std::size_t cut, Eigen::Index k, const std::vector<RunRecord>& runs, std::size_t from,
                              std::size_t count) const {
     const auto row = static_cast<Eigen::Index>(cut);
-    double unit = std::abs(base_.simulated(row, k));
-    if (k == static_cast<Eigen::Index>(Observable::F_t)) unit = std::max(unit, 0.1 * base_.simulated(row, 0));
+    const double unit = typical_size(base_.simulated, row, k);
     std::vector<double> values{base_.simulated(row, k) / unit};
     for (std::size_t i = from; i < from + count; ++i) {
       if (!objective_.misfit().is_usable(cut, runs[i]) || runs[i].branch != base_.runs[cut].branch) return {};
@@ -124,6 +123,7 @@ class Auditor {
       if (entry.observable == Observable::chip_ratio || (!entry.table && !entry.jitter)) continue;
       result_.measured = true;
       result_.noise = std::max(result_.noise, entry.noise);
+      if (entry.table) result_.roughness = std::max(result_.roughness.value_or(0), entry.table->noise);
     }
     result_.noise =
         result_.measured ? std::clamp(result_.noise, least_noise, largest_noise) : objective_.choice().noise;

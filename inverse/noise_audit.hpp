@@ -23,9 +23,10 @@ struct ObservableNoise {
 /// What the simulation resolves, measured before a search trusts its differences.
 struct NoiseAudit {
   std::vector<ObservableNoise> observables;
-  double noise = 0;       ///< of a force: smaller gains are not believed
-  bool measured = false;  ///< false: no replicate could be compared, and the job's values stand
-  double step = 0;        ///< difference step in search coordinates
+  double noise = 0;                 ///< of a force: smaller gains are not believed
+  std::optional<double> roughness;  ///< of a force between neighbouring points, by the tables alone
+  bool measured = false;            ///< false: no replicate could be compared, and the job's values stand
+  double step = 0;                  ///< difference step in search coordinates
   std::size_t runs = 0;
   std::string note;  ///< in words
 };

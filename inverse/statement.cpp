@@ -102,7 +102,7 @@ std::string about_the_edge(const Calibration& calibration) {
     return fmt::format("{}: {} (chi2 {})", fit.assumption, values, number(fit.residuals.chi2));
   };
   for (const Fit& other : calibration.alternatives) {
-    if (!other.has_slopes) continue;
+    if (!other.model) continue;
     text += fmt::format(" What the tool's edge adds to the cutting force is an assumption, not a measurement. {}; {}.",
                         describe(calibration.fit), describe(other));
     if (!other.converged) text += fmt::format(" (The second fit did not converge: {}.)", other.reason);
@@ -144,7 +144,7 @@ std::string state(const Job& job, const Calibration& calibration) {
   if (calibration.partial && fit.converged) text = "Stopped before the other assumption about the edge was fitted. ";
   if (!fit.converged)
     text = fmt::format("The search did not converge: {}. What follows is where it stopped. ", fit.reason);
-  if (!fit.has_slopes)
+  if (!fit.model)
     return text +
            (calibration.partial ? "It was stopped before the differences that errors come from"
                                 : "The budget did not cover the differences that errors come from") +

@@ -9,6 +9,7 @@
 #include "inverse/closed_form_cut.hpp"
 #include "inverse/commands/interruptible_run.hpp"
 #include "inverse/folder.hpp"
+#include "inverse/seen_slopes.hpp"
 #include "inverse/start.hpp"
 #include "models/base/error.hpp"
 
@@ -43,7 +44,7 @@ void use_slopes(const Job& job, RunDatabase& database, const Eigen::VectorXd& po
   Objective objective(job, space, misfit, database, no_limit);
   const Evaluation at = objective.evaluate(point);
   misfit.include_simulation_errors(at);
-  const LocalModel model = LocalModel::by_differences(objective, at);
+  const LocalModel model = seen_slopes(LocalModel::by_differences(objective, at), misfit);
   if (count(model.known()) == 0) throw InputError(where + ": no cut has slopes at the estimate");
   use({.job = job, .model = model, .misfit = misfit, .slopes_of = [&](const Job& other) {
          const ParameterSpace other_space(other);
@@ -64,9 +65,12 @@ void with_known_estimate(const fs::path& job_or_folder, const std::string& code,
     Folder folder = Folder::open(job_or_folder, {}, code);
     RunDatabase database(folder.journal(), code, run_unless_interrupted, folder.job().budget.parallel);
     const Calibration calibration = calibrate(folder.job(), database);
-    return use_slopes(folder.job(), database, calibration.fit.at.point, job_or_folder.string(), use);
+    Job job = folder.job();
+    job.optimiser = calibration.choice;  // whose steps the journal has
+    return use_slopes(job, database, calibration.fit.at.point, job_or_folder.string(), use);
   }
-  const Job job = read_job(job_or_folder);
+  Job job = read_job(job_or_folder);
+  job.optimiser.roughness = 0;
   const ScratchFile scratch;
   Journal journal(scratch.path());
   RunDatabase database(journal, code, closed_form_cut, 1);
