@@ -75,8 +75,8 @@ class Calibrator {
     if (job_.optimiser.audit) audit(first);
     result_.choice = objective_.choice();
 
-    // The differences at the end, from which the errors come, are paid for in advance.
-    const std::size_t reserve = job_.cuts.size() * job_.free.size();
+    // The differences at the end, from which the errors come, and the checks are paid for in advance.
+    const std::size_t reserve = job_.cuts.size() * (job_.free.size() + job_.numerics.size());
     const std::size_t all = job_.budget.max_runs;
     objective_.limit(all > 3 * reserve ? all - reserve : all);
     SearchResult found = find_optimiser(job_.optimiser.method).search(objective_, first);
@@ -85,6 +85,7 @@ class Calibrator {
     const std::optional<LocalModel> model = found.model;
     result_.fit = conclude(job_, objective_, std::move(found));
     if (model && job_.edge_force && job_.edge_force->compare) compare(*model);
+    if (result_.fit.model) result_.numerics = check_numerics(job_, objective_, *result_.fit.model);
     if (model && job_.verify) verify(*model);
 
     result_.trace = objective_.trace();

@@ -8,6 +8,7 @@
 #include "inverse/job.hpp"
 #include "inverse/left_out.hpp"
 #include "inverse/noise_audit.hpp"
+#include "inverse/numerics_check.hpp"
 #include "inverse/optimiser.hpp"
 #include "inverse/run_database.hpp"
 #include "models/base/error.hpp"
@@ -37,11 +38,12 @@ struct Calibration {
   std::vector<Fit> alternatives;  ///< the other edge assumptions, fitted to the same runs and some more
   std::vector<TraceEntry> trace;
   Eigen::VectorXd start;
-  std::string start_origin;         ///< where the start values come from, in words
-  OptimiserChoice choice;           ///< as the job says, or as the audit found
-  std::optional<NoiseAudit> audit;  ///< none: the job did not ask for it or the budget did not cover it
-  double failing_share = 0;         ///< of the cuts at the estimate
-  bool partial = false;             ///< stopped by the user: the best point so far, usually without errors
+  std::string start_origin;             ///< where the start values come from, in words
+  OptimiserChoice choice;               ///< as the job says, or as the audit found
+  std::optional<NoiseAudit> audit;      ///< none: the job did not ask for it or the budget did not cover it
+  std::vector<NumericsShift> numerics;  ///< what the estimates owe to the scene's numerical choices
+  double failing_share = 0;             ///< of the cuts at the estimate
+  bool partial = false;                 ///< stopped by the user: the best point so far, usually without errors
   ExitCode exit_code = ExitCode::success;
   std::string statement;  ///< what is and what is not determined, in plain English
 };

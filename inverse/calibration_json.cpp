@@ -188,6 +188,7 @@ Json noise_audit(const NoiseAudit& audit, const OptimiserChoice& choice) {
     rows.push_back(std::move(row));
   }
   return {{"noise", number(audit.noise)},
+          {"roughness", or_null(audit.roughness)},
           {"step", number(audit.step)},
           {"used_noise", number(choice.noise_given ? choice.noise : audit.noise)},
           {"used_step", number(choice.step_given ? choice.step : audit.step)},
@@ -237,6 +238,30 @@ Json error_budget(const Fit& fit) {
   return all;
 }
 
+/// Shifts of the estimates by name, in their own units and in standard errors.
+Json numerics(const Calibration& calibration) {
+  Json all = Json::array();
+  for (const NumericsShift& check : calibration.numerics) {
+    Json shifts = Json::object();
+    auto shift = check.shifts.begin();
+    for (const std::vector<ParameterEstimate>* estimates :
+         {&calibration.fit.identifiability.parameters, &calibration.fit.identifiability.derived})
+      for (const ParameterEstimate& p : *estimates) {
+        if (shift == check.shifts.end()) break;
+        shifts[p.name] = {{"shift", in_unit(*shift, p.unit)},
+                          {"unit", p.unit},
+                          {"standard_errors", number(*shift / p.standard_error)}};
+        ++shift;
+      }
+    all.push_back({{"name", check.name},
+                   {"cuts", check.cuts},
+                   {"runs", check.runs},
+                   {"chi2", number(check.chi2)},
+                   {"shifts", std::move(shifts)}});
+  }
+  return all;
+}
+
 Json free_start(const Job& job, const Calibration& calibration) {
   const ParameterSpace space(job);
   Json start = Json::object();
@@ -274,6 +299,7 @@ Json calibration_json(const Job& job, const Calibration& calibration, const Cali
     result["error_budget"] = error_budget(fit);
   else
     result["stopped_at"] = where_it_stopped(job, fit);
+  result["numerics"] = numerics(calibration);
   result["resampling"] = resampling(fit);
   result["alternatives"] = Json::array();
   for (const Fit& other : calibration.alternatives) add_fit(result["alternatives"].emplace_back(Json::object()), other);

@@ -229,6 +229,20 @@ Coarse read_coarse(const Contents& contents, const Document& scene) {
   return coarse;
 }
 
+std::vector<NumericsChoice> read_numerics(const Contents& contents, const Document& scene) {
+  std::vector<NumericsChoice> all;
+  for (const Values& values : contents.all("numerics")) {
+    const auto taken = [&](const NumericsChoice& other) { return other.name == values.text("name"); };
+    if (std::any_of(all.begin(), all.end(), taken))
+      throw InputError(
+          fmt::format("{}: the name \"{}\" is taken; choose another one", values.where("name"), values.text("name")));
+    all.push_back({.name = values.text("name"), .scene = scene});
+    apply_settings(values.list("changes"), all.back().scene, forward::scene_blocks(), values.where("changes"));
+    forward::read_scene(all.back().scene);
+  }
+  return all;
+}
+
 InputFile load(const std::string& name, const Locate& locate) {
   return {.name = name, .content = read_file(locate(name))};
 }
@@ -283,7 +297,8 @@ Job read_job(const fs::path& file, const std::string& name, const Locate& locate
           .edge_force = {},
           .budget = {},
           .optimiser = {},
-          .coarse = {.closed_form = false, .scene = base}};
+          .coarse = {.closed_form = false, .scene = base},
+          .numerics = {}};
   job.ties = read_ties(contents, base, job.free);
   for (const Values& values : contents.all("derived")) job.derived.push_back(read_derived(values, job));
   job.verify = contents.at("uncertainty").flag("verify");
@@ -329,6 +344,7 @@ Job read_job(const fs::path& file, const std::string& name, const Locate& locate
   job.optimiser.audit =
       optimiser.has("audit") ? optimiser.flag("audit") : !optimiser.has("step") || !optimiser.has("noise");
   job.coarse = read_coarse(contents, base);
+  job.numerics = read_numerics(contents, base);
   if (contents.has("discrepancy")) job.discrepancy = contents.at("discrepancy").number("relative");
   require_readable_scenes(job);
   return job;

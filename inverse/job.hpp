@@ -124,6 +124,12 @@ struct Coarse {
   Document scene;
 };
 
+/// Another numerical choice (mesh, speed, damping) under which the estimates are asked for once they are found.
+struct NumericsChoice {
+  std::string name;
+  Document scene;
+};
+
 /// A file the job depends on: its name as the job writes it, and its bytes.
 struct InputFile {
   std::string name;
@@ -147,6 +153,7 @@ struct Job {
   Budget budget;
   OptimiserChoice optimiser;
   Coarse coarse;
+  std::vector<NumericsChoice> numerics;
   bool verify = false;     ///< simulate the ends of the 95 % intervals where the budget covers them
   double discrepancy = 0;  ///< relative error that the model is granted in every observable
 

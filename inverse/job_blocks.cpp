@@ -130,6 +130,15 @@ std::vector<Block> declare() {
                            "what differs from the scene in a coarse run, written PATH=VALUE, such as "
                            "\"resolution.cells_through_chip=3\"; without any half the cells")
                           .if_given()}},
+      {.path = "numerics",
+       .variant = "",
+       .meaning = "another numerical choice under which the cuts at the estimate are simulated once more: what the "
+                  "estimates owe to it is reported",
+       .parameters = {text("name", "its name in results, such as \"mesh\""),
+                      list("changes",
+                           "what differs from the scene, written PATH=VALUE, such as "
+                           "\"resolution.cells_through_chip=12\"")},
+       .repeated = true},
       {.path = "discrepancy",
        .variant = "",
        .meaning = "error granted to the model itself, added to the measured standard errors",

@@ -111,6 +111,32 @@ std::string about_the_edge(const Calibration& calibration) {
   return text;
 }
 
+/// What the estimates owe to the numerics, where it is worth a word: from half a standard error on.
+std::string about_the_numerics(const Calibration& calibration) {
+  std::string text;
+  for (const NumericsShift& check : calibration.numerics) {
+    if (check.shifts.empty()) {
+      text += fmt::format(" Under the other numerics \"{}\" no cut could be compared.", check.name);
+      continue;
+    }
+    std::string moved;
+    auto shift = check.shifts.begin();
+    for (const std::vector<ParameterEstimate>* all :
+         {&calibration.fit.identifiability.parameters, &calibration.fit.identifiability.derived})
+      for (const ParameterEstimate& p : *all) {
+        const double by = *shift++;
+        if (!(std::abs(by) > 0.5 * p.standard_error)) continue;
+        moved += fmt::format("{}{} by {} ({:.1f} standard errors)", moved.empty() ? "" : ", ", plain(p.name),
+                             show(by, p.unit), std::abs(by) / p.standard_error);
+      }
+    text += moved.empty() ? fmt::format(" Under the other numerics \"{}\" no estimate moves by half a standard error.",
+                                        check.name)
+                          : fmt::format(" Under the other numerics \"{}\" estimates move: {}; no interval holds this.",
+                                        check.name, moved);
+  }
+  return text;
+}
+
 /// Cuts that a small change of a parameter moves to the other branch.
 std::string about_the_branches(const Job& job, const Fit& fit) {
   std::string cuts;
@@ -158,6 +184,7 @@ std::string state(const Job& job, const Calibration& calibration) {
     }
   text += about_the_priors(job);
   text += about_the_fit(fit.identifiability);
+  text += about_the_numerics(calibration);
   text += about_the_branches(job, fit);
   text += about_the_edge(calibration);
   if (!job.ties.empty()) {

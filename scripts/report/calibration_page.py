@@ -302,8 +302,30 @@ def _error_budget(page, result):
                          "Largest for " + ", ".join(largest) + "." +
                          (" Nothing from: " + ", ".join(absent) + "." if absent else "")))
     section.text(html("Cell size, tool speed and damping shift all estimates together and scatter nothing, so they are no "
-                      "share of a variance: what is granted to them is the stated error of the model, and "
-                      "<code>kerf study JOB.toml</code> measures them."))
+                      "share of a variance: what is granted to them is the stated error of the model{}.",
+                      ", and the table shows what they do" if result.get("numerics") else
+                      html(", and a <code>[[numerics]]</code> in the job or <code>kerf study JOB.toml</code> measures "
+                           "them")))
+    if result.get("numerics"):
+        section.table(["under other numerics"] + [_name(name) for name in result["parameters"]] + ["χ²"],
+                      [_shifts(check, result["parameters"]) for check in result["numerics"]])
+
+
+def _shifts(check, parameters):
+    """A row: what one [[numerics]] moves, in the parameters' units and in standard errors."""
+    row = [html('{}<br><span class="why">{} cuts compared, {} new runs</span>', check["name"], integer(check["cuts"]),
+                integer(check["runs"]))]
+    for name, parameter in parameters.items():
+        shift = check["shifts"].get(name)
+        if not shift or not finite(shift["shift"]):
+            row.append("–")
+            continue
+        factor, unit = large_unit(shift["unit"], [parameter.get("value")])
+        by = number(abs(shift["shift"]) * factor, digits=2)
+        row.append(html('{}{} {}<br><span class="why">{} standard errors</span>', "−" if shift["shift"] < 0 else "+", by,
+                        pretty_unit(unit), number(abs(shift["standard_errors"]), digits=2)
+                        if finite(shift["standard_errors"]) else "no"))
+    return row + [number(check["chi2"])]
 
 
 def _edge(page, result):
