@@ -31,6 +31,7 @@ Fit conclude(const Job& job, const Objective& objective, SearchResult found) {
           .fitted_errors = {},
           .at_jump = found.model ? found.model->at_jump() : CutMask(),
           .resampling = {},
+          .posterior = {},
           .model = {},
           .converged = found.converged,
           .reason = std::move(found.reason)};
@@ -45,6 +46,9 @@ Fit conclude(const Job& job, const Objective& objective, SearchResult found) {
   fit.error_budget = error_budget(fit.identifiability, misfit, model.known());
   fit.fitted_errors = fitted_errors(fit.identifiability, model, misfit, objective.space());
   fit.resampling = resample(model, misfit, objective.space(), job);
+  if (job.posterior_moves > 0)
+    fit.posterior =
+        sample_posterior(model, misfit, objective.space(), job.derived, fit.identifiability, job.posterior_moves);
   return fit;
 }
 

@@ -10,6 +10,7 @@
 #include "inverse/noise_audit.hpp"
 #include "inverse/numerics_check.hpp"
 #include "inverse/optimiser.hpp"
+#include "inverse/posterior.hpp"
 #include "inverse/run_database.hpp"
 #include "models/base/error.hpp"
 
@@ -27,7 +28,8 @@ struct Fit {
   Observations fitted_errors;                               ///< see fitted_errors(); empty without slopes
   CutMask at_jump;  ///< cuts within a difference step of another branch; empty without slopes
   Resampling resampling;
-  std::optional<LocalModel> model;  ///< seen_slopes() about `at`; none: the budget did not allow the differences
+  std::optional<Posterior> posterior;  ///< none: the job did not ask for it, or there are no slopes
+  std::optional<LocalModel> model;     ///< seen_slopes() about `at`; none: the budget did not allow the differences
   bool converged = false;
   std::string reason;
 };

@@ -238,6 +238,28 @@ Json error_budget(const Fit& fit) {
   return all;
 }
 
+/// Every estimate's interval and some four hundred draws, evenly spread over all.
+Json posterior(const Fit& fit) {
+  constexpr Eigen::Index shown = 400;
+  const Posterior& p = *fit.posterior;
+  Json intervals = Json::object(), draws = Json::object();
+  Eigen::Index column = 0;
+  for (const std::vector<ParameterEstimate>* all : {&fit.identifiability.parameters, &fit.identifiability.derived})
+    for (const ParameterEstimate& estimate : *all) {
+      intervals[estimate.name] = interval(p.intervals[static_cast<std::size_t>(column)], estimate.unit);
+      Json& some = draws[estimate.name] = Json::array();
+      for (Eigen::Index i = 0; i < std::min(shown, p.draws.rows()); ++i)
+        some.push_back(in_unit(p.draws(i * p.draws.rows() / std::min(shown, p.draws.rows()), column), estimate.unit));
+      ++column;
+    }
+  return {{"draws", p.draws.rows()},
+          {"independent", p.independent()},
+          {"acceptance", number(p.acceptance)},
+          {"autocorrelation_time", number(p.autocorrelation_time)},
+          {"intervals", std::move(intervals)},
+          {"sample", std::move(draws)}};
+}
+
 /// Shifts of the estimates by name, in their own units and in standard errors.
 Json numerics(const Calibration& calibration) {
   Json all = Json::array();
@@ -299,6 +321,7 @@ Json calibration_json(const Job& job, const Calibration& calibration, const Cali
     result["error_budget"] = error_budget(fit);
   else
     result["stopped_at"] = where_it_stopped(job, fit);
+  if (fit.posterior) result["posterior"] = posterior(fit);
   result["numerics"] = numerics(calibration);
   result["resampling"] = resampling(fit);
   result["alternatives"] = Json::array();

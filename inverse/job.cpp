@@ -302,6 +302,7 @@ Job read_job(const fs::path& file, const std::string& name, const Locate& locate
   job.ties = read_ties(contents, base, job.free);
   for (const Values& values : contents.all("derived")) job.derived.push_back(read_derived(values, job));
   job.verify = contents.at("uncertainty").flag("verify");
+  job.posterior_moves = static_cast<int>(whole_number(contents.at("uncertainty"), "posterior_moves"));
   for (std::size_t k = 0; k < observable_count; ++k) {
     const std::vector<std::string>& wanted = top.list("observables");
     if (std::find(wanted.begin(), wanted.end(), observable_names[k]) != wanted.end())

@@ -30,6 +30,7 @@ def page_of_calibration(calibration):
     _profiles(page, result)
     _directions(page, result)
     _correlation(page, result)
+    _posterior(page, result)
     _error_budget(page, result)
     _edge(page, result)
     _intercepts(page, calibration)
@@ -285,6 +286,21 @@ def _correlation(page, result):
                      "Beyond ±0.9 only a combination of both is known." if abs(matrix[i][j]) > 0.9 else
                      "Nowhere beyond ±0.9, from where on only a combination of both would be known.")
     section.figure(picture, words)
+
+
+def _posterior(page, result):
+    drawn = result.get("posterior")
+    if not drawn:
+        return
+    estimates = [{"label": _titled(name), "unit": p["unit"], "draws": drawn["sample"][name], "interval": p.get("interval"),
+                  "credible": drawn["intervals"][name]} for name, p in _estimates(result).items()
+                 if name in drawn["sample"]]
+    section = page.section("Posterior density", "posterior", "posterior")
+    section.figure(uncertainty_figures.posterior(estimates), html(
+        "A second opinion on every interval: {} draws ({} of them independent) from the density of the parameters given the "
+        "data, uniform within the bounds of the search, over the linearised simulation. Solid lines: 95 % intervals by "
+        "profile; dashed: by the draws. {} draws are shown.", integer(drawn["draws"]), integer(drawn["independent"]),
+        integer(len(estimates[0]["draws"]))))
 
 
 def _error_budget(page, result):

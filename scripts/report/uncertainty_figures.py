@@ -135,6 +135,49 @@ def correlation(names, matrix):
     return svg(fig, "correlation of the estimates")
 
 
+def posterior(estimates):
+    """Draws of every pair below the diagonal, of every estimate on it, with both 95 % intervals.
+
+    estimates: [{"label", "unit", "draws", "interval" (of the profile), "credible" (of the draws)}].
+    """
+    size = len(estimates)
+    if size < 1:
+        return None
+    side = max(110, min(220, 860 / size))
+    fig, axes = figure(side * size + 30, side * size + 20, size, size, squeeze=False, sharex="col")
+    columns = []
+    for e in estimates:
+        factor, unit = large_unit(e["unit"], e["draws"])
+        columns.append((np.array(e["draws"], dtype=float) * factor, factor,
+                        e["label"] + (f", {pretty_unit(unit)}" if unit != "1" else "")))
+    for i in range(size):
+        for j in range(size):
+            ax = axes[i][j]
+            if j > i:
+                ax.axis("off")
+                continue
+            x, factor, label = columns[j]
+            if i == j:
+                ax.hist(x, bins=24, color=ACCENT_LIGHT)
+                for limits, style in ((estimates[i]["interval"], "-"), (estimates[i]["credible"], (0, (4, 3)))):
+                    for end in limits or ():
+                        if finite(end):
+                            ax.axvline(end * factor, color=ACCENT if style == "-" else WARM, linestyle=style, linewidth=1.2)
+                ax.set_yticks([])
+                ax.spines["left"].set_visible(False)
+            else:
+                ax.plot(x, columns[i][0], ".", color=ACCENT, markersize=3, alpha=0.45)
+                ax.yaxis.set_major_locator(MaxNLocator(3))
+                if j == 0:
+                    ax.set_ylabel(columns[i][2])
+                else:
+                    ax.tick_params(labelleft=False)
+            ax.xaxis.set_major_locator(MaxNLocator(3))
+            if i == size - 1:
+                ax.set_xlabel(label)
+    return svg(fig, "draws from the posterior density of the estimates")
+
+
 SOURCES = {"measurement": ("scatter of measurements", ACCENT, "white"),
            "specimen": ("error a specimen shares", ACCENT_LIGHT, INK),
            "simulation": ("noise of the simulation", WARM, "white"),
