@@ -68,12 +68,8 @@ struct Hencky : J2<Hardening> {
     const Lanes per = reciprocal(now_c);
     const Lanes shear = 2.0 * G * per * atanh_ratio((now_a * now_a + now_s * now_s) * per * per);
     const Lanes u = t * reciprocal(1.0 + D), log_volume = 2.0 * u * atanh_ratio(u * u);
-    const Lanes mean = half + (lambda + G) * log_volume, across = shear * now_a;
-    tau.xx = mean + across;
-    tau.yy = mean - across;
     tau.zz += lambda * log_volume;
-    tau.xy = shear * now_s;
-    return this->radial_return(tau);
+    return this->radial_return({half + (lambda + G) * log_volume, shear * now_a, shear * now_s}, tau);
   }
 };
 

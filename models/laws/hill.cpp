@@ -209,49 +209,84 @@ double Hill::elastic_energy(const StressPoint& p) const {
          s[0][1] * xx * yy + s[0][2] * xx * p.zz + s[1][2] * yy * p.zz;
 }
 
+inline bool Hill::return_at_once(const std::array<Lanes, 3>& z, Lanes square, MaterialPoints& points) const {
+  const LinearHardening hardening{.yield_stress = hardening_.yield_stress,
+                                  .modulus = hardening_.yield_stress * hardening_.coefficient};
+  const Lanes flow = hardening.flow_stress(points.plastic_strain), goal = flow * flow;
+  const double D0 = stiffness_[0] + hardening.modulus, D1 = stiffness_[1] + hardening.modulus,
+               D2 = stiffness_[2] + hardening.modulus;
+  // sum (z_i k_i)^2 = square - 2 S_1 t + 3 S_2 t^2 - 4 S_3 t^3 ..., S_n = sum D_i^n z_i^2, solved for t.
+  const Lanes u0 = D0 * z[0] * z[0], u1 = D1 * z[1] * z[1], u2 = D2 * z[2] * z[2];
+  const Lanes v0 = D0 * u0, v1 = D1 * u1, v2 = D2 * u2;
+  const Lanes per_S1 = rough_reciprocal(u0 + u1 + u2);
+  const Lanes first = 0.5 * (square - goal) * per_S1, second = 1.5 * (v0 + v1 + v2) * per_S1,
+              third = 2.0 * (D0 * v0 + D1 * v1 + D2 * v2) * per_S1;
+  const LaneMask yields = square > goal;
+  Lanes t = first + first * first * (second + first * (2.0 * second * second - third));
+  t = yields ? t : Lanes{};
+
+  const Lanes f0 = 1.0 + t * D0, f1 = 1.0 + t * D1, f2 = 1.0 + t * D2, f01 = f0 * f1;
+  const Lanes all = reciprocal(f01 * f2);
+  const Lanes k0 = f1 * f2 * all, k1 = f0 * f2 * all, k2 = f01 * all;
+  const Lanes d0 = D0 * k0, d1 = D1 * k1, d2 = D2 * k2;
+  Lanes s0 = z[0] * k0, s1 = z[1] * k1;
+  const Lanes s2 = z[2] * k2, left = s0 * s0 + s1 * s1 + s2 * s2 - goal;
+  Lanes more = 0.5 * left * rough_reciprocal(d0 * s0 * s0 + d1 * s1 * s1 + d2 * s2 * s2);
+  more = yields ? more : Lanes{};
+  const Lanes before = t;
+  t += more;
+  // The square of this is what Newton's step leaves.
+  constexpr double small = 4e-7;
+  const double stiffest = std::max({D0, D1, D2});
+  if (any(!((abs(more) * stiffest <= small) & (before >= 0.0)))) [[unlikely]]
+    return find_return(hardening, z, sqrt(square), points);
+  s0 -= more * d0 * s0;
+  s1 -= more * d1 * s1;
+  points.plastic_strain += t * flow;
+  points.xx -= t * (return_[0][0] * s0 + return_[1][0] * s1);
+  points.yy -= t * (return_[0][1] * s0 + return_[1][1] * s1);
+  points.zz -= t * (return_[0][2] * s0 + return_[1][2] * s1);
+  points.xy -= points.xy * (t * stiffness_[2] * (k2 - more * d2 * k2));
+  return true;
+}
+
 bool Hill::update(const StrainIncrement& l, MaterialPoints& points) const {
   auto& [xx, yy, zz, xy, plastic_strain, ax, ay] = points;
   // Stress seen from the old axes is the turned stress seen from the turned axes; the strain is seen from these.
-  const Lanes cc = ax * ax, ss = ay * ay, cs = ax * ay;
-  const Lanes old_xx = cc * xx + ss * yy + 2.0 * cs * xy, old_yy = ss * xx + cc * yy - 2.0 * cs * xy;
-  const Lanes old_xy = cs * (yy - xx) + (cc - ss) * xy;
+  const InPlane old = InPlane::of(xx, yy, xy).seen_from(ax, ay);
   const auto [c, s] = step_rotation(l.xy, l.yx);
   const Lanes turned_x = c * ax - s * ay, turned_y = s * ax + c * ay;
   const Lanes unit = 1.5 - 0.5 * (turned_x * turned_x + turned_y * turned_y);  // rounding must not add up
   ax = unit * turned_x;
   ay = unit * turned_y;
-  const Lanes CC = ax * ax, SS = ay * ay, CS = ax * ay, shear = l.xy + l.yx;
-  const Lanes e_xx = CC * l.xx + SS * l.yy + CS * shear, e_yy = SS * l.xx + CC * l.yy - CS * shear;
-  const Lanes e_xy = 2.0 * CS * (l.yy - l.xx) + (CC - SS) * shear;
-  xx = old_xx + c_xx_ * e_xx + c_xy_ * e_yy;
-  yy = old_yy + c_xy_ * e_xx + c_yy_ * e_yy;
+  const InPlane strain = InPlane::of(l.xx, l.yy, 0.5 * (l.xy + l.yx)).seen_from(ax, ay);
+  const Lanes e_xx = strain.xx(), e_yy = strain.yy();
+  xx = old.xx() + c_xx_ * e_xx + c_xy_ * e_yy;
+  yy = old.yy() + c_xy_ * e_xx + c_yy_ * e_yy;
   zz += c_xz_ * e_xx + c_yz_ * e_yy;
-  xy = old_xy + c_shear_ * e_xy;
+  xy = old.shear + 2.0 * c_shear_ * strain.shear;
 
   const std::array<Lanes, 3> z{modes_[0][0] * xx + modes_[0][1] * yy + modes_[0][2] * zz,
                                modes_[1][0] * xx + modes_[1][1] * yy + modes_[1][2] * zz, shear_mode_ * xy};
   const Lanes square = z[0] * z[0] + z[1] * z[1] + z[2] * z[2];
-  const Lanes size = abs(xx) + abs(yy) + abs(zz) + abs(xy) + abs(ax);
-  bool sound = !any(!(size < infinite));
+  if (any(!(square < infinite))) return false;
+  bool converged = true;
   if (any(square > hardening_.yield_stress * hardening_.yield_stress)) {
     // Without a power the flow stress is arithmetic and the whole return map runs in SIMD.
     const bool linear = hardening_.coefficient == 0.0 || hardening_.exponent == 1.0;
-    sound &= linear ? return_to_yield(LinearHardening{.yield_stress = hardening_.yield_stress,
-                                                      .modulus = hardening_.yield_stress * hardening_.coefficient},
-                                      z, sqrt(square), points)
-                    : return_to_yield(hardening_, z, sqrt(square), points);
+    converged = linear ? return_at_once(z, square, points) : find_return(hardening_, z, sqrt(square), points);
   }
 
-  const Lanes m_xx = xx, m_yy = yy, m_xy = xy;
-  xx = CC * m_xx + SS * m_yy - 2.0 * CS * m_xy;
-  yy = SS * m_xx + CC * m_yy + 2.0 * CS * m_xy;
-  xy = CS * (m_xx - m_yy) + (CC - SS) * m_xy;
-  return sound;
+  const InPlane now = InPlane::of(xx, yy, xy).seen_from(ax, -ay);
+  xx = now.xx();
+  yy = now.yy();
+  xy = now.shear;
+  return converged;
 }
 
 template <class Hardening>
-bool Hill::return_to_yield(const Hardening& hardening, const std::array<Lanes, 3>& z, Lanes q,
-                           MaterialPoints& points) const {
+[[gnu::noinline, gnu::cold]] bool Hill::find_return(const Hardening& hardening, const std::array<Lanes, 3>& z, Lanes q,
+                                                    MaterialPoints& points) const {
   const double D0 = stiffness_[0], D1 = stiffness_[1], D2 = stiffness_[2];
   // The weakest mode there is bounds the root of (5) from above.
   double softest = infinite;

@@ -32,7 +32,11 @@ namespace kerf::laws {
 ///     Z sigma = z_i / (1 + m D_i),   sigma = sigma_trial - m C Z^T (Z sigma),   q(m) = |Z sigma|        (4)
 ///     Y_ref (1 + K (eps_p + m q)^n) / q = 1                                                             (5)
 /// one increasing function of m per point, whatever the direction. Directions that cannot yield are absent from Z, not
-/// large numbers in it.
+/// large numbers in it. Hardening that is linear, of slope H, disappears from (5) in t = d eps_p / flow stress before:
+///     Z sigma = (1 + H t) z_i k_i,   m = t/(1 + H t),   sum (z_i k_i)^2 = (flow stress before)^2,
+///     k_i = 1/(1 + (D_i + H) t)                                                                         (6)
+/// As elastic as (4) with stiffer modes, and a step of a simulation passes the yield surface by a few per cent at most:
+/// the series of t in the excess to its third order, then one step of Newton's.
 ///
 /// Objectivity: the axes turn by the exact rotation of the step's spin and the stress, stored in the frame of the grid,
 /// turns with them (Jaumann rate, as in J2). Stress and its elastic energy are functions of the material frame, so the
@@ -86,10 +90,11 @@ class Hill {
   bool update(const StrainIncrement& l, MaterialPoints& points) const;
 
  private:
-  /// Equations (4) and (5), from the stress in material axes and its Z sigma.
+  /// Equations (6), from the stress in material axes and its Z sigma; linear hardening.
+  bool return_at_once(const std::array<Lanes, 3>& z, Lanes square, MaterialPoints& points) const;
+  /// Equations (4) and (5), any hardening and any step.
   template <class Hardening>
-  bool return_to_yield(const Hardening& hardening, const std::array<Lanes, 3>& z, Lanes q,
-                       MaterialPoints& points) const;
+  bool find_return(const Hardening& hardening, const std::array<Lanes, 3>& z, Lanes q, MaterialPoints& points) const;
 
   Constants constants_;
   PowerHardening hardening_;

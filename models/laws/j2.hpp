@@ -62,37 +62,38 @@ struct J2 {
   bool update(const StrainIncrement& l, MaterialPoints& tau) const {
     const double G = shear_modulus(), lambda = lame();
     const auto [c, s] = step_rotation(l.xy, l.yx);
-    const Lanes cc = c * c, ss = s * s, cs = c * s;
-    const Lanes volumetric = lambda * (l.xx + l.yy);
-    const Lanes xx = cc * tau.xx + ss * tau.yy - 2.0 * cs * tau.xy + volumetric + 2.0 * G * l.xx;
-    const Lanes yy = ss * tau.xx + cc * tau.yy + 2.0 * cs * tau.xy + volumetric + 2.0 * G * l.yy;
-    tau.xy = cs * (tau.xx - tau.yy) + (cc - ss) * tau.xy + G * (l.xy + l.yx);
-    tau.xx = xx;
-    tau.yy = yy;
-    tau.zz += volumetric;
-    return radial_return(tau);
+    InPlane now = InPlane::of(tau.xx, tau.yy, tau.xy).seen_from(c, -s);
+    const Lanes trace = l.xx + l.yy;
+    now.mean += (lambda + G) * trace;
+    now.half += G * (l.xx - l.yy);
+    now.shear += G * (l.xy + l.yx);
+    tau.zz += lambda * trace;
+    return radial_return(now, tau);
   }
 
  protected:
-  /// Eqs. (2) and (3) from the trial stress in `tau`.
-  [[gnu::always_inline]] bool radial_return(MaterialPoints& tau) const {
-    const double G = shear_modulus();
-    const Lanes mean = (tau.xx + tau.yy + tau.zz) * (1.0 / 3.0);
-    const Lanes sxx = tau.xx - mean, syy = tau.yy - mean, szz = tau.zz - mean;
-    const Lanes square = 1.5 * (sxx * sxx + syy * syy + szz * szz + 2.0 * tau.xy * tau.xy);
+  /// Eqs. (2) and (3) from the trial stress: in the plane `now`, across it and everything else in `tau`.
+  [[gnu::always_inline]] bool radial_return(InPlane now, MaterialPoints& tau) const {
+    // s has two thirds of `apart` along zz and one third, the other way, in the mean of xx and yy.
+    const Lanes apart = now.mean - tau.zz;
+    const Lanes square = apart * apart + 3.0 * (now.half * now.half + now.shear * now.shear);
     if (any(!(square < std::numeric_limits<double>::infinity()))) return false;
+    bool converged = true;
     // No curve softens: where none of the eight has reached the first yield stress, there is nothing to return.
-    if (!any(square > hardening.yield_stress * hardening.yield_stress)) return true;
-
-    const Lanes inverse_q = inverse_sqrt(square + 1e-300), q = square * inverse_q;
-    Lanes x{};
-    const bool converged = return_to_yield(q, tau.plastic_strain, x);
-    const Lanes keep = 1.0 - 3.0 * G * x * inverse_q;
-    tau.xx = mean + keep * sxx;
-    tau.yy = mean + keep * syy;
-    tau.zz = mean + keep * szz;
-    tau.xy *= keep;
-    tau.plastic_strain += x;
+    if (any(square > hardening.yield_stress * hardening.yield_stress)) {
+      const Lanes inverse_q = inverse_sqrt(square + 1e-300), q = square * inverse_q;
+      Lanes x{};
+      converged = return_to_yield(q, tau.plastic_strain, x);
+      const Lanes lost = 3.0 * shear_modulus() * x * inverse_q;
+      now.mean -= lost * apart * (1.0 / 3.0);
+      tau.zz += lost * apart * (2.0 / 3.0);
+      now.half -= lost * now.half;
+      now.shear -= lost * now.shear;
+      tau.plastic_strain += x;
+    }
+    tau.xx = now.xx();
+    tau.yy = now.yy();
+    tau.xy = now.shear;
     return converged;
   }
 

@@ -21,6 +21,21 @@ struct StressPoint {
   double axis_x = 1.0, axis_y = 0.0;
 };
 
+/// A symmetric tensor in the plane, of eight material points: half the trace, half of xx - yy, and xy. A turn leaves
+/// the first alone and turns the other two by twice its angle.
+struct InPlane {
+  Lanes mean, half, shear;
+
+  static InPlane of(Lanes xx, Lanes yy, Lanes xy) { return {0.5 * (xx + yy), 0.5 * (xx - yy), xy}; }
+  Lanes xx() const { return mean + half; }
+  Lanes yy() const { return mean - half; }
+  /// Its components along axes turned by the angle of the unit vector (c, s).
+  InPlane seen_from(Lanes c, Lanes s) const {
+    const Lanes cos = c * c - s * s, sin = 2.0 * c * s;
+    return {mean, cos * half + sin * shear, cos * shear - sin * half};
+  }
+};
+
 /// The rotation of one step: c and s of the spin (l_yx - l_xy)/2 by the half-angle tangent, so c^2 + s^2 = 1 exactly in
 /// real arithmetic whatever the step, and the angle is right to the third order.
 struct StepRotation {
