@@ -63,6 +63,7 @@ struct Stencil {
   std::ptrdiff_t stride;                                    ///< of the grid's rows
   Lanes f_x, f_y;
 
+  Stencil() = default;
   Stencil(const Grid& grid, Lanes x, Lanes y) : stride(grid.stride) {
     const Lanes column = (x - grid.origin_x) * grid.inverse_cell_x, row = (y - grid.origin_y) * grid.inverse_cell_y;
     const LaneInts i = inside(column, grid.columns), j = inside(row, grid.rows);

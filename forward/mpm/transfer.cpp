@@ -1,11 +1,16 @@
 #include "forward/mpm/transfer.hpp"
 
 #include <algorithm>
+#include <memory>
 
 #include "forward/mpm/stencil.hpp"
 
 namespace kerf::forward {
 namespace {
+
+/// Batches that take each part of a pass one right after the other. What a batch does is a long chain of operations
+/// that wait for one another; the processor works on several chains at once only where they stand close together.
+constexpr std::size_t together = 4;
 
 void clear(std::vector<double>& values) {
   std::fill(values.begin(), values.end(), 0.0);
@@ -79,32 +84,45 @@ void stress_particles(State& state, const Law& material) {
   bool mapped = true;
   for (std::size_t side = 0; side < 2; ++side) {
     VelocityField& field = state.grid.side[side];
-    for (std::size_t first = p.begin[side]; first < p.begin[side + 1]; first += lane_count) {
-      const Stencil stencil(grid, load(&p.x[first]), load(&p.y[first]));
-      const auto [value, rise] = stencil.value_and_rise(field.velocity.data());
-      Lanes xx{}, xy{}, yx{}, yy{};
-      for (std::size_t i = 0; i < 3; ++i) {
-        xx += stencil.slope_x[i] * value[2 * i];
-        yx += stencil.slope_x[i] * value[2 * i + 1];
-        xy += stencil.weight_x[i] * rise[2 * i];
-        yy += stencil.weight_x[i] * rise[2 * i + 1];
+    const std::size_t end = p.begin[side + 1];
+    for (std::size_t begin = p.begin[side]; begin < end; begin += together * lane_count) {
+      const std::size_t batches = std::min(together, (end - begin) / lane_count);
+      std::array<Stencil, together> stencils;
+      std::array<laws::StrainIncrement, together> strains;
+      for (std::size_t b = 0; b < batches; ++b) {
+        const std::size_t first = begin + b * lane_count;
+        const Stencil& stencil = *std::construct_at(&stencils[b], grid, load(&p.x[first]), load(&p.y[first]));
+        const auto [value, rise] = stencil.value_and_rise(field.velocity.data());
+        Lanes xx{}, xy{}, yx{}, yy{};
+        for (std::size_t i = 0; i < 3; ++i) {
+          xx += stencil.slope_x[i] * value[2 * i];
+          yx += stencil.slope_x[i] * value[2 * i + 1];
+          xy += stencil.weight_x[i] * rise[2 * i];
+          yy += stencil.weight_x[i] * rise[2 * i + 1];
+        }
+        strains[b] = {.xx = strain_x * xx, .xy = strain_y * xy, .yx = strain_x * yx, .yy = strain_y * yy};
       }
-      laws::MaterialPoints points = p.material_points<Law::has_axes>(first);
-      mapped &=
-          material.update({.xx = strain_x * xx, .xy = strain_y * xy, .yx = strain_x * yx, .yy = strain_y * yy}, points);
-      p.set<Law::has_axes>(first, points);
-      const Lanes volume = load(&p.volume[first]);
-      const Lanes along = -grid.inverse_cell_x * volume, across = -grid.inverse_cell_y * volume;
-      const Lanes along_x = along * points.xx, along_y = along * points.xy;
-      const Lanes across_x = across * points.xy, across_y = across * points.yy;
-      std::array<Lanes, 6> by_weight, by_slope;
-      for (std::size_t i = 0; i < 3; ++i) {
-        by_weight[2 * i] = stencil.slope_x[i] * along_x;
-        by_weight[2 * i + 1] = stencil.slope_x[i] * along_y;
-        by_slope[2 * i] = stencil.weight_x[i] * across_x;
-        by_slope[2 * i + 1] = stencil.weight_x[i] * across_y;
+      for (std::size_t b = 0; b < batches; ++b) {
+        laws::MaterialPoints points = p.material_points<Law::has_axes>(begin + b * lane_count);
+        mapped &= material.update(strains[b], points);
+        p.set<Law::has_axes>(begin + b * lane_count, points);
       }
-      stencil.add(field.force.data(), by_weight, by_slope);
+      for (std::size_t b = 0; b < batches; ++b) {
+        const std::size_t first = begin + b * lane_count;
+        const Stencil& stencil = stencils[b];
+        const Lanes volume = load(&p.volume[first]), stress_xy = load(&p.stress_xy[first]);
+        const Lanes along = -grid.inverse_cell_x * volume, across = -grid.inverse_cell_y * volume;
+        const Lanes along_x = along * load(&p.stress_xx[first]), along_y = along * stress_xy;
+        const Lanes across_x = across * stress_xy, across_y = across * load(&p.stress_yy[first]);
+        std::array<Lanes, 6> by_weight, by_slope;
+        for (std::size_t i = 0; i < 3; ++i) {
+          by_weight[2 * i] = stencil.slope_x[i] * along_x;
+          by_weight[2 * i + 1] = stencil.slope_x[i] * along_y;
+          by_slope[2 * i] = stencil.weight_x[i] * across_x;
+          by_slope[2 * i + 1] = stencil.weight_x[i] * across_y;
+        }
+        stencil.add(field.force.data(), by_weight, by_slope);
+      }
     }
   }
   if (!mapped && state.breakdown.empty()) state.breakdown = "the return mapping of the material found no solution";
@@ -151,33 +169,41 @@ void advance_all(State& state, double rate) {
   Lanes lost{}, outside{};
   for (std::size_t side = 0; side < 2; ++side) {
     VelocityField& field = state.grid.side[side];
-    for (std::size_t first = p.begin[side]; first < p.begin[side + 1]; first += lane_count) {
-      const Lanes x = load(&p.x[first]), y = load(&p.y[first]), mass = load(&p.volume[first]) * state.density;
-      const Stencil stencil(grid, x, y);
-      const auto [old_x, old_y] = stencil.sum(field.velocity.data());
-      const auto [change_x, change_y] = stencil.sum(field.change.data());
-      const Lanes move_x = old_x + change_x, move_y = old_y + change_y;
-      Lanes vx = load(&p.velocity_x[first]) + change_x, vy = load(&p.velocity_y[first]) + change_y;
-      if constexpr (blend != Blend::none) {
-        Lanes target_x = move_x, target_y = move_y;
-        if constexpr (blend == Blend::xpic) {
-          const auto filtered = stencil.sum(field.filtered.data());
-          target_x = filtered[0];
-          target_y = filtered[1];
+    const std::size_t end = p.begin[side + 1];
+    for (std::size_t begin = p.begin[side]; begin < end; begin += together * lane_count) {
+      const std::size_t batches = std::min(together, (end - begin) / lane_count);
+      for (std::size_t b = 0; b < batches; ++b) {
+        const std::size_t first = begin + b * lane_count;
+        const Lanes x = load(&p.x[first]), y = load(&p.y[first]), mass = load(&p.volume[first]) * state.density;
+        const Stencil stencil(grid, x, y);
+        const auto [old_x, old_y] = stencil.sum(field.velocity.data());
+        const auto [change_x, change_y] = stencil.sum(field.change.data());
+        const Lanes move_x = old_x + change_x, move_y = old_y + change_y;
+        Lanes vx = load(&p.velocity_x[first]) + change_x, vy = load(&p.velocity_y[first]) + change_y;
+        if constexpr (blend != Blend::none) {
+          Lanes target_x = move_x, target_y = move_y;
+          if constexpr (blend == Blend::xpic) {
+            const auto filtered = stencil.sum(field.filtered.data());
+            target_x = filtered[0];
+            target_y = filtered[1];
+          }
+          const Lanes flip_x = vx, flip_y = vy;
+          vx += rate * (target_x - vx);
+          vy += rate * (target_y - vy);
+          lost += 0.5 * mass * (flip_x * flip_x + flip_y * flip_y - vx * vx - vy * vy);
         }
-        const Lanes flip_x = vx, flip_y = vy;
-        vx += rate * (target_x - vx);
-        vy += rate * (target_y - vy);
-        lost += 0.5 * mass * (flip_x * flip_x + flip_y * flip_y - vx * vx - vy * vy);
+        store(&p.velocity_x[first], vx);
+        store(&p.velocity_y[first], vy);
+        store(&p.x[first], x + dt * move_x);
+        store(&p.y[first], y + dt * move_y);
       }
-      store(&p.velocity_x[first], vx);
-      store(&p.velocity_y[first], vy);
-      const Lanes next_x = x + dt * move_x, next_y = y + dt * move_y;
-      store(&p.x[first], next_x);
-      store(&p.y[first], next_y);
-      const Stencil next(grid, next_x, next_y);
-      outside = next.outside(outside);
-      next.add_momentum(field.momentum.data(), field.mass.data(), mass, vx, vy);
+      for (std::size_t b = 0; b < batches; ++b) {
+        const std::size_t first = begin + b * lane_count;
+        const Stencil next(grid, load(&p.x[first]), load(&p.y[first]));
+        outside = next.outside(outside);
+        next.add_momentum(field.momentum.data(), field.mass.data(), load(&p.volume[first]) * state.density,
+                          load(&p.velocity_x[first]), load(&p.velocity_y[first]));
+      }
     }
   }
   if (sum(outside) > 0.0) state.breakdown = "a particle left the grid or its position is not a number";
