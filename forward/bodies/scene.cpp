@@ -117,7 +117,14 @@ std::vector<Block> declare() {
       number("center_y", "mm", -1e5, 1e5, "of the disc").if_given(),
       number("velocity_x", "m/s", -1e5, 1e5, "along x, at the start; of a rigid body, what it takes").or_else("0 m/s"),
       number("velocity_y", "m/s", -1e5, 1e5, "along y").or_else("0 m/s")};
-  for (Block& block : laws::body_blocks(place)) blocks.push_back(std::move(block));
+  std::vector<Parameter> start = place;
+  for (const Parameter& parameter :
+       {number("wavelength", "mm", 1e-5, 1e9,
+               "at the start the velocity is a sine along x, zero at the left edge; absent: even")
+            .if_given(),
+        number("spin", "rad/s", -1e9, 1e9, "at the start, about the middle, anticlockwise").or_else("0 rad/s")})
+    start.push_back(parameter);
+  for (Block& block : laws::body_blocks(start)) blocks.push_back(std::move(block));
   blocks.push_back({.path = "rigid",
                     .variant = "",
                     .meaning = "a body that nothing deforms or deflects",
@@ -170,6 +177,8 @@ BodyPlan read_body(const Values& values, double length, double height) {
                 .shape = read_shape(values, "body", length, height),
                 .velocity_x = values.number("velocity_x"),
                 .velocity_y = values.number("velocity_y"),
+                .wavelength = values.has("wavelength") ? values.number("wavelength") : 0.0,
+                .spin = values.number("spin"),
                 .where = values.where("law")};
   std::visit(
       [&](const auto& law) {

@@ -20,6 +20,8 @@ struct BodyPlan {
   laws::BodyLaw law;
   Shape shape;
   double velocity_x = 0, velocity_y = 0;  ///< at the start, mm/s
+  double wavelength = 0;                  ///< along x of a start velocity that is a sine; 0: the same everywhere, mm
+  double spin = 0;                        ///< about the middle at the start, anticlockwise, rad/s
   double temperature = 0;                 ///< at the start, K; only of thermal laws
   std::string where;                      ///< of the block in its file
 };

@@ -24,6 +24,8 @@ struct Shape {
   /// Is this place inside, by more than `margin`?
   bool contains(const Place& at, double margin = 0) const;
   std::array<Place, 4> corners() const;
+  /// Of the disc, or of the rectangle.
+  Place middle() const { return disc ? Place{disc->x, disc->y} : place(0.5 * width, 0.5 * height); }
 };
 
 /// A part of a body: where its centre lies, and its volume per unit width, mm^2.

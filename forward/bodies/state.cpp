@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "forward/bodies/step.hpp"
 
@@ -25,6 +26,14 @@ void add_point(Points& p, double x, double y, double volume, const std::vector<l
   for (std::size_t k = 0; k < memory.size(); ++k) p.memory[k].push_back(memory[k].at_rest);
 }
 
+Place start_velocity(const BodyPlan& plan, double x, double y) {
+  const Shape& shape = plan.shape;
+  const double wave =
+      plan.wavelength > 0.0 ? std::sin(2.0 * std::numbers::pi * (x - shape.left) / plan.wavelength) : 1.0;
+  const Place middle = shape.middle();
+  return {wave * plan.velocity_x - plan.spin * (y - middle.y), wave * plan.velocity_y + plan.spin * (x - middle.x)};
+}
+
 Body make_body(const BodyPlan& plan, double gap_x, double gap_y) {
   Body body{.law = plan.law, .points = {}, .field = {}};
   Points& p = body.points;
@@ -32,12 +41,11 @@ Body make_body(const BodyPlan& plan, double gap_x, double gap_y) {
       std::visit([](const auto& law) { return std::decay_t<decltype(law)>::memory(); }, plan.law);
   p.memory.resize(memory.size());
   for (const Part& part : divide(plan.shape, gap_x, gap_y)) add_point(p, part.at.x, part.at.y, part.volume, memory);
-  p.velocity_x.assign(p.size(), plan.velocity_x);
-  p.velocity_y.assign(p.size(), plan.velocity_y);
-  while (p.size() % lane_count != 0) {
-    add_point(p, p.x.back(), p.y.back(), 0.0, memory);
-    p.velocity_x.back() = plan.velocity_x;
-    p.velocity_y.back() = plan.velocity_y;
+  while (p.size() % lane_count != 0) add_point(p, p.x.back(), p.y.back(), 0.0, memory);
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const Place velocity = start_velocity(plan, p.x[i], p.y[i]);
+    p.velocity_x[i] = velocity.x;
+    p.velocity_y[i] = velocity.y;
   }
   if (plan.temperature > 0.0) p.temperature.assign(p.size(), plan.temperature);
   return body;

@@ -321,8 +321,10 @@ Totals totals(const State& state) {
       all.mass += law.mass_density() * sum(volume);
       all.momentum_x += law.mass_density() * sum(volume * vx);
       all.momentum_y += law.mass_density() * sum(volume * vy);
-      all.moment_x += law.mass_density() * sum(volume * load(&p.x[first]));
-      all.moment_y += law.mass_density() * sum(volume * load(&p.y[first]));
+      const Lanes x = load(&p.x[first]), y = load(&p.y[first]);
+      all.moment_x += law.mass_density() * sum(volume * x);
+      all.moment_y += law.mass_density() * sum(volume * y);
+      all.angular_momentum += law.mass_density() * sum(volume * (x * vy - y * vx));
       all.kinetic += 0.5 * law.mass_density() * sum(volume * (vx * vx + vy * vy));
       all.internal += sum(volume * law.energy(points));
       all.stress_xx += sum(volume * points.xx);

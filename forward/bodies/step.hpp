@@ -31,6 +31,7 @@ struct Totals {
   double mass = 0;
   double momentum_x = 0, momentum_y = 0;  ///< tonne/s
   double moment_x = 0, moment_y = 0;      ///< mass times position of its centre, tonne
+  double angular_momentum = 0;            ///< about the origin, tonne mm/s
 };
 Totals totals(const State& state);
 
