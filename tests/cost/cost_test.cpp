@@ -51,20 +51,22 @@ TEST(Cost, AnAbsentEffectRunsNoInstruction) {
   if (std::string(KERF_COST_PROBE).empty() || std::system("command -v valgrind >/dev/null") != 0)
     GTEST_SKIP() << "valgrind counts the instructions, and is not installed (scripts/install-deps.sh)";
   std::map<std::string, double> count = instructions();
-  ASSERT_EQ(count.size(), 13u);
+  ASSERT_EQ(count.size(), 16u);
   // Where the system lays memory can cost the first case some thousand instructions, once in many runs; a stage or a
   // field too many costs them every time.
   const auto differ = [&] { return std::abs(count.at("plain") / count.at("by_hand") - 1.0) > 2e-4; };
   if (differ()) count = instructions();
-  ASSERT_EQ(count.size(), 13u);
+  ASSERT_EQ(count.size(), 16u);
   for (const auto& [name, per_particle_step] : count)
-    std::printf("%-14s %8.1f instructions per particle-step\n", name.c_str(), per_particle_step);
+    std::printf("%-18s %8.1f instructions per particle-step\n", name.c_str(), per_particle_step);
 
   EXPECT_NEAR(count.at("plain") / count.at("by_hand"), 1.0, 2e-4);
   for (const char* effect : {"friction", "edge_contact", "chip_breaker", "sole", "nose_bar", "bridging", "pic_damping",
                              "xpic_damping", "thermostat"})
     EXPECT_GT(count.at(effect) / count.at("plain"), 1.001) << effect;
   EXPECT_GT(count.at("grips") / count.at("no_tool"), 1.001);
+  for (const char* effect : {"bodies_gravity", "bodies_pic_damping"})
+    EXPECT_GT(count.at(effect) / count.at("bodies"), 1.001) << effect;
 }
 
 /// Bytes that a state holds after a few steps, by what holds them.

@@ -108,6 +108,7 @@ inline Vibration vibrate(int cells, bool free_end, const std::string& options = 
     for (std::size_t i = first; i < last; ++i) sum += energy[i];
     return sum / static_cast<double>(last - first);
   };
+  if (crossings.size() < 2) return {.frequency_error = std::nan(""), .energy_kept = 0, .energy_swing = 1};
   const double found = (crossings.back() - crossings.front()) / static_cast<double>(crossings.size() - 1);
   const std::size_t one = energy.size() / periods;
   const double all = mean(0, one);

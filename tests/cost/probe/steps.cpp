@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "forward/bodies/step.hpp"
 #include "forward/mpm/crack.hpp"
 #include "forward/mpm/tool.hpp"
 #include "forward/mpm/transfer.hpp"
@@ -71,6 +72,31 @@ std::vector<Stage> written_by_hand(const Scene& scene, bool tool) {
   return stages;
 }
 
+/// A few hundred points of a bar with no optional block but `options`.
+void count_bodies(const std::string& name, const std::string& options) {
+  namespace bodies = kerf::forward::bodies;
+  const bodies::Scene scene = bodies::read_scene(Document::parse(
+      "title = \"bar\"\nmeasures = []\n[box]\nlength = \"32 mm\"\nheight = \"8 mm\"\ncell = \"1 mm\"\n"
+      "[[body]]\nlaw = \"j2\"\nelastic_modulus = \"1 GPa\"\npoisson_ratio = 0.3\ndensity = \"1000 kg/m^3\"\n"
+      "yield_stress = \"100 MPa\"\nvelocity_x = \"1 m/s\"\nwavelength = \"64 mm\"\n"
+      "[[stroke]]\nlongest = \"1 ms\"\n" +
+          options,
+      "probe.toml"));
+  bodies::State state = bodies::lay_out(scene);
+  bodies::Joint joint(state, scene);
+  const std::vector<bodies::Stage> stages = bodies::plan(scene, joint);
+  const auto steps = [&](int n) {
+    for (int i = 0; i < n; ++i)
+      for (const bodies::Stage& stage : stages) stage.apply(state, scene.strokes[0]);
+  };
+  steps(warm_up);
+  CALLGRIND_START_INSTRUMENTATION;
+  steps(counted);
+  CALLGRIND_STOP_INSTRUMENTATION;
+  CALLGRIND_DUMP_STATS_AT(name.c_str());
+  std::printf("%s %zu %d\n", name.c_str(), state.bodies[0].points.size(), counted);
+}
+
 }  // namespace
 }  // namespace kerf::forward
 
@@ -98,4 +124,7 @@ int main() {
   specimen.grips = {.both_arms = true, .position = 0.75, .width = 0.125, .gauge = 0.25, .lower_arm = 0.5};
   count("no_tool", specimen, written_by_hand(specimen, false));
   planned("grips", specimen);
+  count_bodies("bodies", "");
+  count_bodies("bodies_gravity", "[gravity]\ny = \"-10 m/s^2\"\n");
+  count_bodies("bodies_pic_damping", "[pic_damping]\nrate = 0.02\n");
 }
