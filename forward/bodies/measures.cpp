@@ -143,6 +143,12 @@ double bar_modulus(const laws::BodyLaw& law, bool held_across) {
       law);
 }
 
+double volume_of(const Shape& shape, double cell) {
+  double volume = 0;
+  for (const Part& part : divide(shape, 0.25 * cell, 0.25 * cell)) volume += part.volume;
+  return volume;
+}
+
 void modulus(const BodiesResult& result, const Scene& scene, Json& json) {
   // Mean over the last half of the last stroke, in which the waves of the loading have died away.
   const Span span = span_of(result, scene.strokes.size() - 1);
@@ -154,17 +160,35 @@ void modulus(const BodiesResult& result, const Scene& scene, Json& json) {
     impulse += result.history[i].force * step;
     duration += step;
   }
-  const double stress = impulse / duration / scene.height;
   const double strain = result.history.back().length / scene.length - 1.0;
-  json["effective_modulus"] = stress / strain;
   const bool held = scene.walls[top] == Wall::roller && scene.walls[bottom] == Wall::roller;
-  double compliance = 0;
-  for (const BodyPlan& body : scene.bodies) compliance += body.shape.width / scene.length / bar_modulus(body.law, held);
+  // Layers: Reuss across, Voigt along, and between them the shear, 1/G - 2 nu/E = 2/E.
+  double volume = 0, reuss = 0, voigt = 0;
+  for (const BodyPlan& body : scene.bodies) {
+    const double modulus = bar_modulus(body.law, held), part = volume_of(body.shape, scene.cell);
+    volume += part;
+    reuss += part / modulus;
+    voigt += part * modulus;
+  }
+  reuss /= volume;
+  voigt /= volume;
+  const double stress = impulse / duration / (volume / scene.length);
+  json["effective_modulus"] = stress / strain;
+  double length = 0, cc = 0;
+  if (scene.bodies.size() == 2)
+    for (const EdgePiece& piece : common_edge(scene.bodies[0].shape, scene.bodies[1].shape, scene.cell / 16)) {
+      length += piece.length;
+      cc += piece.length * piece.normal_x * piece.normal_x;
+    }
+  cc = length > 0.0 ? std::min(cc / length, 1.0) : 1.0;
+  const double ss = 1.0 - cc;
+  double compliance = (cc * cc + 2.0 * cc * ss) * reuss + ss * ss / voigt;
   json["perfect_modulus"] = 1.0 / compliance;
   if (scene.interface) {
     const double D = strain < 0.0 ? scene.interface->compressive : scene.interface->normal;
-    compliance += 1.0 / (D * scene.length);
+    compliance += length / volume * (cc * cc / D + cc * ss / scene.interface->tangential);
     json["interface_stiffness"] = D;
+    json["interface_angle"] = std::acos(std::sqrt(cc)) * 180.0 / std::numbers::pi;
   }
   json["closed_form_modulus"] = 1.0 / compliance;
   json["effective_modulus_error"] = std::abs(stress / strain * compliance - 1.0);

@@ -20,8 +20,11 @@ namespace kerf::forward::bodies {
 /// - hertz: of a cylinder pressed on a flat or on another, force (N/mm), half_width (mm) from the second moment of the
 ///   nodal forces over the second half of the last stroke, peak_pressure (MPa) from their sum over the inner half, and
 ///   their errors against what the force makes of them in Hertz's contact
-/// - modulus: effective_modulus along x of what lies in the box, and effective_modulus_error against bodies and
-///   interface in series, 1/E = sum (l_i/L)/E_i + 1/(D_n L)
+/// - modulus: effective_modulus along x of what lies in the box, and effective_modulus_error against layers whose
+/// normal
+///   stands askew by a, with f_i their shares and A/V the interface's area per volume, c = cos a, s = sin a:
+///   1/E = (c^4 + 2 c^2 s^2) sum f_i/E_i + s^4/(sum f_i E_i) + A/V (c^4/D_n + c^2 s^2/D_t). Exact for layers of one
+///   material, where a bar free at its sides has the same stress everywhere; of several in a wide body with nu = 0
 nlohmann::ordered_json measure(const BodiesResult& result, const Scene& scene);
 
 }  // namespace kerf::forward::bodies

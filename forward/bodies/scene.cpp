@@ -115,6 +115,13 @@ std::vector<Block> declare() {
       number("radius", "mm", 1e-5, 1e5, "of a disc: the body is what of it lies in the rectangle").if_given(),
       number("center_x", "mm", -1e5, 1e5, "of the disc").if_given(),
       number("center_y", "mm", -1e5, 1e5, "of the disc").if_given(),
+      number("slab_angle", "deg", -180, 180,
+             "direction of a line: the body is what of the rectangle lies to the left of it")
+          .if_given(),
+      number("slab_x", "mm", -1e5, 1e5, "of a place on that line; absent: 0").if_given(),
+      number("slab_y", "mm", -1e5, 1e5, "and along y; absent: 0").if_given(),
+      number("slab_thickness", "mm", 1e-5, 1e5, "no further from the line than this; absent: however far").if_given(),
+      number("slab_period", "mm", 1e-5, 1e5, "and again at every multiple of this; absent: once").if_given(),
       number("velocity_x", "m/s", -1e5, 1e5, "along x, at the start; of a rigid body, what it takes").or_else("0 m/s"),
       number("velocity_y", "m/s", -1e5, 1e5, "along y").or_else("0 m/s")};
   std::vector<Parameter> start = place;
@@ -142,13 +149,37 @@ std::size_t index_of(const Names& names, const std::string& name) {
   return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
 }
 
+std::optional<Shape::Slab> read_slab(const Values& values, const char* block) {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  const auto given = [&](const char* key, double otherwise) {
+    return values.has(key) ? values.number(key) : otherwise;
+  };
+  if (!values.has("slab_angle")) {
+    for (const char* key : {"slab_x", "slab_y", "slab_thickness", "slab_period"})
+      if (values.has(key))
+        throw InputError(
+            fmt::format("{}: [[{}]] has the key \"{}\" and lacks \"slab_angle\"", values.where(key), block, key));
+    return {};
+  }
+  const Shape::Slab slab{.x = given("slab_x", 0.0),
+                         .y = given("slab_y", 0.0),
+                         .angle = values.number("slab_angle"),
+                         .thickness = given("slab_thickness", infinite),
+                         .period = given("slab_period", infinite)};
+  if (std::isfinite(slab.period) && !(slab.thickness < slab.period))
+    throw InputError(fmt::format("{}: [[{}]] repeats its slab after {:.4g} mm (allowed: more than its slab_thickness)",
+                                 values.where("slab_period"), block, slab.period));
+  return slab;
+}
+
 Shape read_shape(const Values& values, const char* block, double length, double height) {
   Shape shape{.left = values.number("left"),
               .bottom = values.number("bottom"),
               .width = 0,
               .height = 0,
               .angle = values.number("angle"),
-              .disc = {}};
+              .disc = {},
+              .slab = read_slab(values, block)};
   shape.width = values.has("width") ? values.number("width") : length - shape.left;
   shape.height = values.has("height") ? values.number("height") : height - shape.bottom;
   const double rounding = 1e-9 * (length + height);
@@ -162,6 +193,9 @@ Shape read_shape(const Values& values, const char* block, double length, double 
                     "of {:.4g} x {:.4g} mm",
                     values.where("width"), block, shape.width, shape.height, shape.left, shape.bottom,
                     shape.angle != 0.0 ? ", turned," : "", length, height));
+  if (shape.slab && divide(shape, shape.width / 64, shape.height / 64).empty())
+    throw InputError(
+        fmt::format("{}: [[{}]] has no part of its slab in its rectangle", values.where("slab_angle"), block));
   if (!values.has("radius") && !values.has("center_x") && !values.has("center_y")) return shape;
   for (const char* key : {"radius", "center_x", "center_y"})
     if (!values.has(key))
@@ -353,9 +387,6 @@ Scene read_scene(const Document& document) {
     if (scene.bodies.size() != 2)
       throw InputError(fmt::format("{}: [interface] joins two bodies; this scene has {}", values.where("normal"),
                                    scene.bodies.size()));
-    for (const BodyPlan& body : scene.bodies)
-      if (body.shape.angle != 0.0 || body.shape.disc)
-        throw InputError(fmt::format("{}: [interface] joins rectangles that are not turned", body.where));
     const double normal = values.number("normal");
     scene.interface = {.normal = normal,
                        .compressive = values.has("compressive") ? values.number("compressive") : normal,

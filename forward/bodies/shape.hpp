@@ -10,7 +10,7 @@ struct Place {
   double x, y;  ///< mm
 };
 
-/// What a body fills: a rectangle, turned about its lower left corner; with a disc, what both have in common.
+/// What a body fills: a rectangle, turned about its lower left corner; with a disc or a slab, what they have in common.
 struct Shape {
   double left, bottom, width, height;  ///< mm
   double angle = 0;                    ///< rad, anticlockwise
@@ -18,6 +18,13 @@ struct Shape {
     double x, y, radius;
   };
   std::optional<Disc> disc;
+  /// What lies to the left of a line, no further from it than `thickness`; again at every multiple of `period`.
+  struct Slab {
+    double x, y, angle;        ///< a place on the line, and its direction, mm, rad
+    double thickness, period;  ///< mm; infinite where the slab has no other face and comes but once
+    bool contains(const Place& at, double margin) const;
+  };
+  std::optional<Slab> slab;
 
   /// Of a place in the rectangle's own frame, which begins at its lower left corner.
   Place place(double along, double up) const;
@@ -35,7 +42,16 @@ struct Part {
 };
 
 /// Divides a shape by a lattice of its own whose spacing divides the rectangle's sides and is next to the given one.
-/// Parts that the disc's edge cuts keep what lies inside, at its centre, so that the edge is no staircase.
+/// Parts that a disc's or a slab's edge cuts keep what lies inside, at its centre, so that the edge is no staircase.
 std::vector<Part> divide(const Shape& shape, double spacing_x, double spacing_y);
+
+/// A piece of an edge: its middle, its unit normal, its length, mm.
+struct EdgePiece {
+  Place at;
+  double normal_x, normal_y, length;
+};
+
+/// Where two shapes meet, in pieces not longer than `longest`; normals point from a to b.
+std::vector<EdgePiece> common_edge(const Shape& a, const Shape& b, double longest);
 
 }  // namespace kerf::forward::bodies

@@ -270,7 +270,7 @@ std::vector<Stage> plan(const Scene& scene, Joint& joint) {
                                       : "normal impulses between bodies that touch",
         [&scene](State& state, const Stroke&) { touch(state, scene); });
   else if (scene.bodies.size() > 1)
-    add("join", scene.interface ? "springs of the interface, implicit" : "bodies share one change of velocity",
+    add("join", scene.interface ? "springs of the interface" : "bodies share one change of velocity",
         [&joint](State& state, const Stroke&) { joint.join(state); });
   add("advance", scene.pic_damping ? "points move (FLIP with a share of PIC, booked as damping)" : "points move (FLIP)",
       [&scene](State& state, const Stroke&) {

@@ -46,6 +46,10 @@ TEST(BodiesScene, BadInputIsSaidWithItsPlace) {
               HasSubstr("joins two bodies"));
   const std::string bar = shipped_text("interface_bar");
   EXPECT_THAT(complaint(replaced(bar, "normal = \"10 MPa", "normal = \"-10 MPa")), HasSubstr("normal"));
+  EXPECT_THAT(complaint(replaced(bar, "[[body]]", "[[body]]\nslab_x = \"1 mm\"")), HasSubstr("lacks \"slab_angle\""));
+  const std::string laminate = shipped_text("laminate");
+  EXPECT_THAT(complaint(replaced(laminate, "\"34 mm\"", "\"16 mm\"")), HasSubstr("more than its slab_thickness"));
+  EXPECT_THAT(complaint(replaced(laminate, "\"-120 deg\"", "\"60 deg\"")), HasSubstr("both hold the place"));
   EXPECT_THAT(complaint(bar + "\n[conduction]\nconductivity = \"1 W/(m K)\"\n"),
               HasSubstr("a body with a temperature"));
 }
