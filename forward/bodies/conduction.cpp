@@ -9,17 +9,6 @@
 namespace kerf::forward::bodies {
 namespace {
 
-double capacity_of(const Body& body) {
-  return std::visit(
-      [](const auto& law) {
-        if constexpr (std::decay_t<decltype(law)>::is_thermal)
-          return law.heat_capacity();
-        else
-          return 0.0;
-      },
-      body.law);
-}
-
 /// Calls visit(node, weight, slope along x, slope along y) for the nine nodes around a point.
 template <class Visit>
 void each_node(const Grid& grid, double x, double y, Visit&& visit) {
@@ -40,7 +29,7 @@ void Conductor::operator()(State& state) {
   for (const Body& body : state.bodies) {
     if (!body.is_thermal()) continue;
     const Points& p = body.points;
-    const double c = capacity_of(body);
+    const double c = laws::heat_capacity(body.law);
     for (std::size_t i = 0; i < p.size(); ++i)
       each_node(grid, p.reference_x[i], p.reference_y[i], [&](std::size_t node, double w, double, double) {
         capacity_[node] += w * p.volume[i] * c;
@@ -109,7 +98,7 @@ void Conductor::operator()(State& state) {
 double longest_conduction_step(const State& state, const Scene& scene) {
   double least = std::numeric_limits<double>::infinity();
   for (const Body& body : state.bodies)
-    if (body.is_thermal()) least = std::min(least, capacity_of(body));
+    if (body.is_thermal()) least = std::min(least, laws::heat_capacity(body.law));
   const double cell = std::min(state.grid.cell_x, state.grid.cell_y);
   return 0.25 * cell * cell * least / scene.conduction->conductivity;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "forward/bodies/walls.hpp"
+#include "forward/mpm/bspline.hpp"
 #include "forward/mpm/stencil.hpp"
 
 namespace kerf::forward::bodies {
@@ -211,7 +212,16 @@ void exchange_impulses(State& state, const Scene& scene) {
     // An impulse works with the mean of the velocities before and after the change that it is part of.
     const Place after_a = a.change(), after_b = b.change();
     const double mean_x = before.x + 0.5 * (after_b.x - after_a.x), mean_y = before.y + 0.5 * (after_b.y - after_a.y);
-    contact.friction_heat -= impulse.x * mean_x + impulse.y * mean_y;
+    const double heat = -(impulse.x * mean_x + impulse.y * mean_y);
+    contact.friction_heat += heat;
+    if (!contact.heat.empty()) {
+      const bool into_a = state.bodies[at.a].is_thermal();
+      const bool into_b = at.b < state.bodies.size() && state.bodies[at.b].is_thermal();
+      const double share = into_a && into_b ? 0.5 : 1.0;
+      if (into_a) contact.heat[at.a][at.node] += share * heat;
+      if (into_b) contact.heat[at.b][at.node] += share * heat;
+      if (into_a || into_b) contact.warmed += heat;
+    }
     contact.impact -= impulse.normal * (at.normal_x * mean_x + at.normal_y * mean_y);
     contact.pressed.impulse[at.node] += impulse.normal;
     if (!b.rigid) continue;
@@ -274,6 +284,10 @@ void meet(State& state, const Scene& scene) {
   for (std::size_t b = 0; b < deforming; ++b) contact.velocity[b] = state.bodies[b].field.velocity;
   for (RigidBody& rigid : contact.rigids) rigid.force_x = rigid.force_y = 0.0;
   contact.pressed.impulse.resize(state.grid.nodes(), 0.0);
+  if (friction_warms(scene)) {
+    contact.heat.resize(deforming);
+    for (std::vector<double>& heat : contact.heat) heat.assign(state.grid.nodes(), 0.0);
+  }
   exchange_impulses(state, scene);
   for (Body& body : state.bodies)
     for (std::size_t k = 0; k < 2 * state.grid.nodes(); ++k) body.field.velocity[k] += body.field.change[k];
@@ -288,6 +302,31 @@ void touch(State& state, const Scene& scene) {
       field.change[k] += field.velocity[k] - state.contact.velocity[b][k];
     field.velocity = state.contact.velocity[b];
     mirror_velocity(state, scene, field);
+  }
+}
+
+bool friction_warms(const Scene& scene) {
+  return scene.contact && scene.contact->friction > 0.0 && scene.is_thermal();
+}
+
+void warm_by_friction(State& state, const Scene& scene) {
+  for (std::size_t b = 0; b < state.bodies.size(); ++b) {
+    Body& body = state.bodies[b];
+    if (!body.is_thermal()) continue;
+    const double density = std::visit([](const auto& law) { return law.mass_density(); }, body.law);
+    const double specific_heat = laws::heat_capacity(body.law) / density;
+    std::vector<double>& rise = state.contact.heat[b];
+    for (std::size_t node = 0; node < state.grid.nodes(); ++node)
+      if (rise[node] != 0.0) rise[node] /= specific_heat * body.field.mass[node];
+    for (const std::size_t normal : {0u, 1u})
+      each_mirror(state.grid, scene, normal, [&](const Mirror& m, Edge) { rise[m.behind] = rise[m.before]; });
+    Points& p = body.points;
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      const Spline along(state.grid.column_of(p.x[i])), up(state.grid.row_of(p.y[i]));
+      for (int m = 0; m < 3; ++m)
+        for (int n = 0; n < 3; ++n)
+          p.temperature[i] += along.weight(n) * up.weight(m) * rise[state.grid.node(along.base + n, up.base + m)];
+    }
   }
 }
 

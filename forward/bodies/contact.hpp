@@ -24,6 +24,13 @@ void meet(State& state, const Scene& scene);
 /// The same for the velocities that the forces make; both become part of the changes, of velocities as gathered.
 void touch(State& state, const Scene& scene);
 
+/// Does friction warm a body? It does where one has a temperature.
+bool friction_warms(const Scene& scene);
+
+/// The heat that friction has made at a node in this step goes half and half into the two bodies, or whole into the one
+/// that has a temperature; a body's points share it as they share the node's heat capacity.
+void warm_by_friction(State& state, const Scene& scene);
+
 /// Rigid bodies move with their velocity, which then follows its plan.
 void move_rigids(State& state, const Scene& scene);
 

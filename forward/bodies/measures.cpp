@@ -220,6 +220,28 @@ void sliding(const BodiesResult& result, const Scene& scene, Json& json) {
   json["acceleration_error"] = std::abs(found - expected) / g;
 }
 
+void rubbing(const BodiesResult& result, const Scene& scene, Json& json) {
+  if (scene.bodies.size() != 2) return;
+  const BodyPlan &a = scene.bodies[0], &b = scene.bodies[1];
+  const double volume_a = volume_of(a.shape, scene.cell), volume_b = volume_of(b.shape, scene.cell);
+  const auto density = [](const BodyPlan& body) {
+    return std::visit([](const auto& law) { return law.mass_density(); }, body.law);
+  };
+  const double mass_a = volume_a * density(a), mass_b = volume_b * density(b);
+  const double w = std::hypot(b.velocity_x - a.velocity_x, b.velocity_y - a.velocity_y);
+  const double heat = 0.5 * mass_a * mass_b / (mass_a + mass_b) * w * w;
+  const Reading &start = result.history.front(), &end = result.history.back();
+  json["friction_heat"] = end.friction_heat;
+  json["closed_form_friction_heat"] = heat;
+  json["friction_heat_error"] = std::abs(end.friction_heat / heat - 1.0);
+  const double c_a = laws::heat_capacity(a.law), c_b = laws::heat_capacity(b.law);
+  if (c_a == 0.0 || c_b == 0.0) return;
+  const double warming = 0.5 * heat * (1.0 / c_a + 1.0 / c_b) / (volume_a + volume_b);
+  json["warming"] = end.temperature - start.temperature;
+  json["closed_form_warming"] = warming;
+  json["warming_error"] = std::abs((end.temperature - start.temperature) / warming - 1.0);
+}
+
 void hertz(const BodiesResult& result, const Scene& scene, Json& json) {
   double compliance = 0, curvature = 0, axis = 0;
   for (const BodyPlan& body : scene.bodies) compliance += 1.0 / bar_modulus(body.law, false);
@@ -279,6 +301,9 @@ Json measure(const BodiesResult& result, const Scene& scene) {
         break;
       case Measure::sliding:
         sliding(result, scene, json);
+        break;
+      case Measure::rubbing:
+        rubbing(result, scene, json);
         break;
       case Measure::hertz:
         hertz(result, scene, json);

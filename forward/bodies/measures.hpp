@@ -20,6 +20,9 @@ namespace kerf::forward::bodies {
 /// - hertz: of a cylinder pressed on a flat or on another, force (N/mm), half_width (mm) from the second moment of the
 ///   nodal forces over the second half of the last stroke, peak_pressure (MPa) from their sum over the inner half, and
 ///   their errors against what the force makes of them in Hertz's contact
+/// - rubbing: of two bodies that slide on each other until they have one velocity, friction_heat (N mm/mm) and warming
+///   (K, mean over both) against m w^2/2 with the velocity w between them at the start and m = m_1 m_2/(m_1 + m_2), of
+///   which either gets half
 /// - modulus: effective_modulus along x of what lies in the box, and effective_modulus_error against layers whose
 /// normal
 ///   stands askew by a, with f_i their shares and A/V the interface's area per volume, c = cos a, s = sin a:

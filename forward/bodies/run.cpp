@@ -86,6 +86,7 @@ class Recorder {
          .rigid_work = state.contact.rigid_work,
          .friction_heat = state.contact.friction_heat,
          .impact = state.contact.impact,
+         .warmed = state.contact.warmed,
          .velocity_x = now.momentum_x / now.mass,
          .velocity_y = now.momentum_y / now.mass,
          .rigid_force_x = duration_ > 0.0 ? rigid_impulse_.x / duration_ : 0.0,
@@ -226,6 +227,7 @@ nlohmann::ordered_json result_json(const BodiesResult& result, const Scene& scen
     column("gravity_work", [](const Reading& r) { return r.gravity_work; });
     column("rigid_work", [](const Reading& r) { return r.rigid_work; });
     column("friction_heat", [](const Reading& r) { return r.friction_heat; });
+    column("warmed", [](const Reading& r) { return r.warmed; });
     column("impact", [](const Reading& r) { return r.impact; });
     column("velocity_x", [](const Reading& r) { return r.velocity_x; });
     column("velocity_y", [](const Reading& r) { return r.velocity_y; });

@@ -21,10 +21,13 @@ struct Reading {
   double internal, kinetic, damping, interface;     ///< internal: its change since the start
   double start_kinetic;
   double gravity_work, rigid_work, friction_heat, impact;  ///< since the start; zero without gravity and contact
-  double velocity_x, velocity_y;                           ///< of the bodies' centre of mass, mm/s
+  double warmed;                        ///< part of friction_heat that is in the bodies' internal energy
+  double velocity_x, velocity_y;        ///< of the bodies' centre of mass, mm/s
   double rigid_force_x, rigid_force_y;  ///< of the first rigid body on the others, mean since the last reading
   double supplied() const { return piston_work + heat + gravity_work + rigid_work + start_kinetic; }
-  double residue() const { return supplied() - internal - kinetic - damping - interface - friction_heat - impact; }
+  double residue() const {
+    return supplied() - internal - kinetic - damping - interface - (friction_heat - warmed) - impact;
+  }
 };
 
 struct BodiesResult {

@@ -78,9 +78,9 @@ struct Contact {
 };
 
 /// What to read off the run: see bodies/measures.
-enum class Measure { cycle, rubber, expansion, modulus, sliding, hertz };
-inline constexpr std::array<const char*, 6> measure_names{"cycle",   "rubber",  "expansion",
-                                                          "modulus", "sliding", "hertz"};
+enum class Measure { cycle, rubber, expansion, modulus, sliding, hertz, rubbing };
+inline constexpr std::array<const char*, 7> measure_names{"cycle",   "rubber", "expansion", "modulus",
+                                                          "sliding", "hertz",  "rubbing"};
 
 struct Scene {
   std::string title;

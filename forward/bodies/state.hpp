@@ -77,7 +77,9 @@ struct ContactState {
   std::vector<std::vector<double>> velocity;  ///< of every body's nodes, as gathered
   double rigid_work = 0;                      ///< of the rigid bodies on the others
   double friction_heat = 0;
-  double impact = 0;  ///< lost where approaching surfaces take one velocity
+  std::vector<std::vector<double>> heat;  ///< of friction in this step, at every body's nodes; empty unless it warms
+  double warmed = 0;                      ///< part of the heat of friction that has warmed bodies
+  double impact = 0;                      ///< lost where approaching surfaces take one velocity
   struct Pressed {
     std::vector<double> impulse;  ///< normal, at every node, N s/mm
     double since = 0;             ///< s

@@ -269,7 +269,10 @@ std::vector<Stage> plan(const Scene& scene, Joint& joint) {
         scene.contact->friction > 0.0 ? "normal impulses and Coulomb friction between bodies that touch"
                                       : "normal impulses between bodies that touch",
         [&scene](State& state, const Stroke&) { touch(state, scene); });
-  else if (scene.bodies.size() > 1)
+  if (friction_warms(scene))
+    add("warm", "heat of friction warms the bodies that rub",
+        [&scene](State& state, const Stroke&) { warm_by_friction(state, scene); });
+  if (!scene.contact && scene.bodies.size() > 1)
     add("join", scene.interface ? "springs of the interface" : "bodies share one change of velocity",
         [&joint](State& state, const Stroke&) { joint.join(state); });
   add("advance", scene.pic_damping ? "points move (FLIP with a share of PIC, booked as damping)" : "points move (FLIP)",

@@ -28,6 +28,17 @@ const std::vector<Kind>& kinds() {
 
 }  // namespace
 
+double heat_capacity(const BodyLaw& law) {
+  return std::visit(
+      [](const auto& which) {
+        if constexpr (std::decay_t<decltype(which)>::is_thermal)
+          return which.heat_capacity();
+        else
+          return 0.0;
+      },
+      law);
+}
+
 std::vector<Block> body_blocks(const std::vector<Parameter>& common) {
   std::vector<Block> blocks;
   for (const Kind& kind : kinds()) {

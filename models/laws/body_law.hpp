@@ -49,6 +49,9 @@ concept ThermalLaw = LawOfBody<Law> && Law::is_thermal && requires(const Law& la
   { law.configurational_entropy(points) } -> std::same_as<Lanes>;
 };
 
+/// c of a law of heat and stress, N/(mm^2 K); zero of the others.
+double heat_capacity(const BodyLaw& law);
+
 /// One [[body]] block per law, each beginning with `common`.
 std::vector<Block> body_blocks(const std::vector<Parameter>& common);
 

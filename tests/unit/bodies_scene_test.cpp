@@ -90,11 +90,14 @@ TEST(BodiesScene, AnAbsentEffectHasNoStageAndNoByte) {
               ElementsAre("project", "strain", "conduct", "accelerate", "advance", "piston"));
   EXPECT_THAT(stages_of(shipped_text("incline")),
               ElementsAre("project", "meet", "strain", "gravity", "accelerate", "touch", "advance", "push", "piston"));
+  EXPECT_THAT(stages_of(shipped_text("friction_heat")),
+              ElementsAre("project", "meet", "strain", "gravity", "accelerate", "touch", "warm", "advance", "piston"));
   const State bar = lay_out(read_scene(Document::parse(shipped_text("interface_bar"), "bar.toml")));
   EXPECT_EQ(bar.bodies[0].points.temperature.capacity(), 0u);
   EXPECT_EQ(bar.bodies[0].points.memory.size(), 1u);
   EXPECT_EQ(bar.bodies[0].field.filtered.capacity(), 0u);
-  EXPECT_TRUE(bar.contact.presence.empty() && bar.contact.rigids.empty() && bar.contact.velocity.empty());
+  EXPECT_TRUE(bar.contact.presence.empty() && bar.contact.rigids.empty() && bar.contact.heat.empty() &&
+              bar.contact.velocity.empty());
 }
 
 TEST(BodiesScene, BodiesFillTheirRectangles) {

@@ -74,6 +74,23 @@ TEST(BodiesContact, ABlockStaysIfFrictionIsAboveTheTangentAndElseDoesNot) {
   EXPECT_LT(number(below, "acceleration_error"), 1e-2);
 }
 
+TEST(BodiesContact, FrictionWarmsBothBodiesWithHalfItsHeatEach) {
+  const BodiesResult result = result_of(shipped_text("friction_heat"));
+  ASSERT_TRUE(result.accepted);
+  std::printf("heat of friction off by %.4f, warming by %.4f\n", number(result, "friction_heat_error"),
+              number(result, "warming_error"));
+  // PIC damping and the hop as the weight comes on take the rest.
+  EXPECT_LT(number(result, "friction_heat_error"), 0.015);
+  // The points get what is booked, and halves show in bodies of different heat capacity.
+  EXPECT_NEAR(number(result, "warming") / number(result, "closed_form_warming"),
+              number(result, "friction_heat") / number(result, "closed_form_friction_heat"), 1e-6);
+  const Reading& end = result.history.back();
+  EXPECT_NEAR(end.warmed / end.friction_heat, 1.0, 1e-12);
+  EXPECT_LT(std::abs(end.residue()), 0.01 * end.start_kinetic);
+  // The slab has no floor to rub on: momentum stays.
+  EXPECT_NEAR(end.velocity_x, 8e3 * 128 / (128 + 800), 1.0);
+}
+
 /// Two free blocks that hit each other askew and rub.
 std::string collision(double friction, const char* overlap) {
   const auto body = [](double left, double bottom, double angle, double velocity, double density) {
