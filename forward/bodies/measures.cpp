@@ -46,6 +46,16 @@ void cycle(const BodiesResult& result, const Scene& scene, Json& json) {
   json["closing_length_error"] = end.length / scene.length - 1.0;
   json["heat_taken"] = taken;
   json["work_given"] = -end.piston_work;
+  if (end.plastic_work > 0.0) {
+    // Yielding makes entropy in every stroke: beta dW_p/T, between beta W_p/T_h and beta W_p/T_c.
+    const auto* metal = std::get_if<laws::MieGruneisen>(&scene.bodies.front().law);
+    const double made = end.entropy - end.bath_entropy;
+    json["plastic_work"] = end.plastic_work;
+    json["entropy_made"] = made;
+    json["entropy_made_by_yielding"] = metal->taylor_quinney * end.plastic_work / (0.5 * (hot + cold));
+    json["work_lost"] = cold * made;
+    json["net_heat_given_off"] = -end.heat;
+  }
   const auto* gas = std::get_if<laws::IdealGas>(&scene.bodies.front().law);
   if (!gas || scene.bodies.size() != 1) return;
   double worst = 0;

@@ -8,7 +8,8 @@ namespace kerf::forward::bodies {
 /// - cycle: four strokes, isothermal and adiabatic in turn. efficiency (work given off over heat taken in at the hotter
 ///   bath), carnot_efficiency 1 - T_c/T_h, net_entropy_ratio |Q_h/T_h + Q_c/T_c| / |Q_h/T_h|, closing_temperature_error
 ///   (temperature at the end over T_h, less one); of one ideal gas also pv_gamma_error, the largest relative departure
-///   of p V^gamma from its value at the start of an adiabatic stroke
+///   of p V^gamma from its value at the start of an adiabatic stroke; of a metal that yields also entropy_made, of the
+///   body and the baths, and entropy_made_by_yielding, beta W_p over the mean temperature, and work_lost, T_c times it
 /// - expansion: first_step_temperature_change, K, and what the law says, -gamma_0 T dJ, of one Mie-Grueneisen body
 /// - rubber: of one ideal rubber, stroke 1 isothermal: heat_over_work, heat given off over work taken in (1: dq = -dw);
 ///   first adiabatic stroke: adiabatic_temperature_error against T exp((w - w_0)/(c T_0)) of an incompressible strip,

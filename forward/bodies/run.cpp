@@ -82,6 +82,7 @@ class Recorder {
          .damping = state.damping,
          .interface = state.interface_energy,
          .start_kinetic = first_.kinetic,
+         .plastic_work = now.plastic_work,
          .gravity_work = gravity_.x * (now.moment_x - first_.moment_x) + gravity_.y * (now.moment_y - first_.moment_y),
          .rigid_work = state.contact.rigid_work,
          .friction_heat = state.contact.friction_heat,
@@ -222,6 +223,7 @@ nlohmann::ordered_json result_json(const BodiesResult& result, const Scene& scen
   column("kinetic", [](const Reading& r) { return r.kinetic; });
   column("damping", [](const Reading& r) { return r.damping; });
   column("interface", [](const Reading& r) { return r.interface; });
+  column("plastic_work", [](const Reading& r) { return r.plastic_work; });
   column("residue", [](const Reading& r) { return r.residue(); });
   if (scene.contact) {
     column("gravity_work", [](const Reading& r) { return r.gravity_work; });

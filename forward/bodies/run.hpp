@@ -20,6 +20,7 @@ struct Reading {
   double piston_work, heat, bath_entropy, entropy;  ///< since the start; entropy: of the bodies
   double internal, kinetic, damping, interface;     ///< internal: its change since the start
   double start_kinetic;
+  double plastic_work;  ///< of thermal bodies since the start; in internal as heat and stored energy
   double gravity_work, rigid_work, friction_heat, impact;  ///< since the start; zero without gravity and contact
   double warmed;                        ///< part of friction_heat that is in the bodies' internal energy
   double velocity_x, velocity_y;        ///< of the bodies' centre of mass, mm/s

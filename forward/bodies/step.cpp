@@ -335,6 +335,8 @@ Totals totals(const State& state) {
       if constexpr (std::decay_t<decltype(law)>::is_thermal) {
         heated += sum(volume);
         all.temperature += sum(volume * points.temperature);
+        if constexpr (requires { law.plastic_work(points); })
+          all.plastic_work += sum(volume * law.plastic_work(points));
         const Lanes thermal = each_lane(points.temperature, [](double T) { return std::log(T); });
         all.entropy += sum(volume * (law.heat_capacity() * thermal + law.configurational_entropy(points)));
       }

@@ -16,6 +16,9 @@ std::vector<Parameter> MieGruneisen::parameters() {
       number("specific_heat", "J/(kg K)", 1.0, 1e5, "specific heat at constant volume"),
       number("shear_modulus", "MPa", 1e-3, 1e6, "shear modulus G"),
       number("yield_stress", "MPa", 1e-3, 1e5, "von Mises yield stress; absent: the metal stays elastic").if_given(),
+      number("taylor_quinney", "1", 0.0, 1.0,
+             "share of the work of yielding that becomes heat; the rest stays in the metal as stored energy")
+          .or_else("1"),
       number("reference_temperature", "K", 1.0, 1e4, "T_0, of the state without stress"),
       number("temperature", "K", 1.0, 1e4, "temperature at the start; absent: that of the reference state").if_given()};
 }
@@ -29,6 +32,7 @@ MieGruneisen MieGruneisen::from(const Values& values) {
           .shear_modulus = values.number("shear_modulus"),
           .yield_stress =
               values.has("yield_stress") ? values.number("yield_stress") : std::numeric_limits<double>::infinity(),
+          .taylor_quinney = values.number("taylor_quinney"),
           .reference = values.number("reference_temperature")};
 }
 
@@ -76,7 +80,7 @@ bool MieGruneisen::find_stress(BodyPoints& p) const {
     zz *= keep;
     xy *= keep;
     p.memory[plastic_strain] += slip;
-    p.heating = yield_stress * slip;
+    p.heating = taylor_quinney * yield_stress * slip;
   }
   Lanes kirchhoff{};
   for (std::size_t i = 0; i < lane_count; ++i)
@@ -92,7 +96,7 @@ Lanes MieGruneisen::energy(const BodyPoints& p) const {
   const Lanes mean = (p.xx + p.yy + p.zz) / 3.0;
   const Lanes xx = p.xx - mean, yy = p.yy - mean, zz = p.zz - mean;
   Lanes stored = (xx * xx + yy * yy + zz * zz + 2.0 * p.xy * p.xy) / (4.0 * shear_modulus);
-  stored += heat_capacity() * (p.temperature - reference);
+  stored += heat_capacity() * (p.temperature - reference) + (1.0 - taylor_quinney) * plastic_work(p);
   return stored + density * each_lane(1.0 - p.memory[volume_ratio], [this](double eta) { return cold_energy(eta); });
 }
 

@@ -15,17 +15,19 @@ namespace kerf::laws {
 ///     u = c (T - T_0) + e(eta),   de/deta = p(eta, T_0)/rho_0 - gamma_0 c T_0,  e(0) = 0     (2)
 ///     S/rho_0 = c ln(T/T_0) - gamma_0 c eta                                                (3)
 /// (2) is what makes (1) and (3) belong to one free energy: an elastic expansion dJ cools by gamma_0 T dJ. The stress
-/// deviator follows the Jaumann rate with a constant shear modulus; all work of yielding is heat. The equation of state
+/// deviator follows the Jaumann rate with a constant shear modulus; of the work of yielding a share beta (Taylor and
+/// Quinney's) is heat, the rest stays in the metal as stored energy. The equation of state
 /// in this form: Wilkins, Computer Simulation of Dynamic Phenomena (1999), section 3.
 struct MieGruneisen {
-  double density;        ///< rho_0, tonne/mm^3
-  double sound_speed;    ///< C_0, mm/s
-  double slope;          ///< S
-  double gruneisen;      ///< gamma_0
-  double specific_heat;  ///< c, mm^2/(s^2 K)
-  double shear_modulus;  ///< G, MPa
-  double yield_stress;   ///< MPa; infinite: elastic
-  double reference;      ///< T_0, K
+  double density;         ///< rho_0, tonne/mm^3
+  double sound_speed;     ///< C_0, mm/s
+  double slope;           ///< S
+  double gruneisen;       ///< gamma_0
+  double specific_heat;   ///< c, mm^2/(s^2 K)
+  double shear_modulus;   ///< G, MPa
+  double yield_stress;    ///< MPa; infinite: elastic
+  double taylor_quinney;  ///< beta
+  double reference;       ///< T_0, K
 
   static std::string name() { return "mie_gruneisen"; }
   static std::string meaning() {
@@ -44,6 +46,10 @@ struct MieGruneisen {
   }
   bool find_stress(BodyPoints& points) const;
   Lanes energy(const BodyPoints& points) const;
+  /// Done on the metal in yielding, MPa.
+  Lanes plastic_work(const BodyPoints& points) const {
+    return std::isfinite(yield_stress) ? yield_stress * points.memory[1] : Lanes{};
+  }
   Lanes wave_speed(const BodyPoints& points) const;
   /// Eq. (1) at a volume ratio and a temperature, MPa.
   double pressure(double volume_ratio, double temperature) const;

@@ -23,6 +23,7 @@ const MieGruneisen tungsten{.density = 1.9224e-8,
                             .specific_heat = 1.34e8,
                             .shear_modulus = 160e3,
                             .yield_stress = std::numeric_limits<double>::infinity(),
+                            .taylor_quinney = 1,
                             .reference = 300};
 
 template <class Law>

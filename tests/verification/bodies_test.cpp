@@ -54,6 +54,41 @@ TEST(Bodies, AdiabaticExpansionOfTungstenCoolsAsItsGruneisenConstantSays) {
   EXPECT_GT(plastic.history.back().temperature, elastic.history.back().temperature + 0.01);
 }
 
+TEST(Bodies, TheTaylorQuinneyShareOfYieldingHeatsAndTheRestIsStored) {
+  for (const double beta : {1.0, 0.5, 0.0}) {
+    std::string text = shipped_text("carnot_tungsten_plastic");
+    text = text.substr(0, text.find("[[stroke]]")) +
+           "[[stroke]]\nheat = \"adiabatic\"\npiston_speed = \"0.1 m/s\"\nramp = \"0.05 ms\"\nuntil_stretch = 1.004\n"
+           "[pic_damping]\nrate = 0.02\n";
+    text =
+        replaced(replaced(text, "\"cycle\", ", ""), "taylor_quinney = 0.9", fmt::format("taylor_quinney = {}", beta));
+    const BodiesResult result = result_of(text);
+    ASSERT_TRUE(result.accepted) << beta;
+    const Reading& end = result.history.back();
+    // One stretch, e = ln J: the deviator yields at sigma_y = 2 G e, then slips by 2/3 de.
+    const double J = end.length / 10, slip = 2.0 / 3 * (std::log(J) - 700 / (2 * 160e3)), capacity = 19224e-12 * 134e6;
+    EXPECT_NEAR(end.plastic_work / (40 * 700 * slip), 1.0, 2e-3) << beta;
+    const double warming = end.temperature - 300 * std::exp(-1.54 * (J - 1));
+    std::printf("beta = %.1f: warming by yielding %.4f K, work over heat capacity %.4f K\n", beta, warming,
+                700 * slip / capacity);
+    EXPECT_NEAR(warming, beta * 700 * slip / capacity, 2e-3 * 700 * slip / capacity) << beta;
+    EXPECT_LT(std::abs(end.residue()), 1e-3 * end.plastic_work) << beta;
+  }
+}
+
+TEST(Bodies, YieldingTurnsTheEngineIntoAHeater) {
+  const BodiesResult result = result_of(shipped_text("carnot_tungsten_plastic"));
+  ASSERT_TRUE(result.accepted);
+  EXPECT_LT(number(result, "efficiency"), -0.5);
+  EXPECT_NEAR(number(result, "entropy_made") / number(result, "entropy_made_by_yielding"), 1.0, 1e-3);
+  EXPECT_GT(number(result, "net_heat_given_off"), 0.5 * number(result, "plastic_work"));
+  double last = 0;
+  for (const Reading& r : result.history) {
+    EXPECT_GE(r.plastic_work, last);
+    last = r.plastic_work;
+  }
+}
+
 TEST(Bodies, IdealRubberGivesAllWorkAsHeatAndWarmsWhenPulledFast) {
   const BodiesResult result = result_of(shipped_text("rubber_gough"));
   ASSERT_TRUE(result.accepted);
