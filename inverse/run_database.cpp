@@ -10,12 +10,6 @@
 #include "models/base/error.hpp"
 
 namespace kerf::inverse {
-namespace {
-
-// A whole result holds a picture of some hundred kilobytes; the runs at the final estimate are among the last of these.
-constexpr std::size_t results_kept = 64;
-
-}  // namespace
 
 struct RunDatabase::Task {
   std::string key;
@@ -25,11 +19,8 @@ struct RunDatabase::Task {
 RunDatabase::RunDatabase(Journal& journal, std::string code, const Simulator& simulate, int parallel, RunEvents events)
     : RunDatabase(
           journal, std::move(code),
-          [this, simulate](const RunRequest& request, const std::string& key, std::optional<double>) {
-            forward::CutResult result = simulate(forward::read_scene(request.scene));
-            RunRecord record = summarise(result);
-            keep_recent(key, std::move(result));
-            return record;
+          [simulate](const RunRequest& request, const std::string&, std::optional<double>) {
+            return summarise(simulate(forward::read_scene(request.scene)));
           },
           parallel, std::move(events)) {}
 
@@ -79,14 +70,6 @@ double RunDatabase::core_seconds() const {
 std::optional<RunRecord> RunDatabase::find(const Document& scene) const {
   const auto found = known_.find(key(scene));
   return found == known_.end() ? std::nullopt : std::optional(found->second);
-}
-
-std::optional<forward::CutResult> RunDatabase::recent(const Document& scene) const {
-  const std::string wanted = key(scene);
-  const auto found =
-      std::find_if(recent_.begin(), recent_.end(), [&](const auto& kept) { return kept.first == wanted; });
-  if (found == recent_.end()) return std::nullopt;
-  return found->second;
 }
 
 double RunDatabase::wall_seconds() const {
@@ -168,12 +151,6 @@ void RunDatabase::simulate_all(std::vector<Task>& tasks) {
     work();
   }
   if (failure) std::rethrow_exception(failure);
-}
-
-void RunDatabase::keep_recent(const std::string& key, forward::CutResult result) {
-  const std::lock_guard lock(finishing_);
-  recent_.emplace_back(key, std::move(result));
-  if (recent_.size() > results_kept) recent_.pop_front();
 }
 
 /// In the journal first, then here.

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <chrono>
-#include <deque>
 #include <functional>
 #include <map>
 #include <mutex>
@@ -72,9 +71,6 @@ class RunDatabase {
   /// The record of a run that has ended, now or before; nothing is simulated.
   std::optional<RunRecord> find(const Document& scene) const;
 
-  /// The whole result of a run of this process, while it is still in memory.
-  std::optional<forward::CutResult> recent(const Document& scene) const;
-
   std::string key(const Document& scene) const;
 
   /// Wall time of this and of all earlier sessions on the journal, s.
@@ -85,7 +81,6 @@ class RunDatabase {
   void simulate_all(std::vector<Task>& tasks);
   void finish(const Task& task, const RunRecord& record);
   void remember(const Task& task, const RunRecord& record);
-  void keep_recent(const std::string& key, forward::CutResult result);
   std::optional<double> median_seconds(std::size_t cut) const;
   double expected_seconds(std::size_t cut) const;
 
@@ -98,7 +93,6 @@ class RunDatabase {
   std::map<std::string, RunRecord> known_;
   std::set<std::string> asked_;
   std::map<std::size_t, std::vector<double>> seconds_;  ///< wall times of each cut's runs
-  std::deque<std::pair<std::string, forward::CutResult>> recent_;
   std::size_t simulated_ = 0;
   double earlier_seconds_ = 0;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();

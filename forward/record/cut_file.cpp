@@ -242,6 +242,18 @@ fs::path xdmf_beside(const fs::path& h5) {
   return fs::path(h5).replace_extension(".xdmf");
 }
 
+void rename_cut(const fs::path& from, const fs::path& to) {
+  fs::create_directories(to.parent_path());
+  fs::rename(from, to);
+  const fs::path described = xdmf_beside(from);
+  std::string text = read_file(described);
+  const std::string old_name = from.filename().string(), new_name = to.filename().string();
+  for (std::size_t at = text.find(old_name); at != std::string::npos; at = text.find(old_name, at + new_name.size()))
+    text.replace(at, old_name.size(), new_name);
+  write_atomically(xdmf_beside(to), text);
+  fs::remove(described);
+}
+
 KeptCut read_cut(const fs::path& h5) {
   const std::lock_guard lock(one_at_a_time);
   if (!fs::exists(h5)) throw InputError(fmt::format("{}: there is no such file", h5.string()));

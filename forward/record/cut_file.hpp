@@ -21,6 +21,9 @@ namespace kerf::forward {
 /// called from several threads. Throws InputError when the place cannot be written or `scene` is not a scene.
 void write_cut(const std::filesystem::path& h5, const Document& scene, const CutResult& result);
 
+/// Gives a cut's file another name, and its XDMF description with it; missing parent folders are created.
+void rename_cut(const std::filesystem::path& from, const std::filesystem::path& to);
+
 /// The scene and the result (see forward/record/result_json.hpp) that a cut's file remembers.
 struct KeptCut {
   Document scene;

@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "inverse/calibration.hpp"
+#include "inverse/child_runs.hpp"
 #include "inverse/closed_form_cut.hpp"
-#include "inverse/commands/interruptible_run.hpp"
 #include "inverse/folder.hpp"
 #include "inverse/seen_slopes.hpp"
 #include "inverse/start.hpp"
@@ -63,7 +63,8 @@ void with_known_estimate(const fs::path& job_or_folder, const std::string& code,
       throw InputError(fmt::format("{}: holds no finished calibration; `kerf resume {}` goes on with it",
                                    job_or_folder.string(), job_or_folder.string()));
     Folder folder = Folder::open(job_or_folder, {}, code);
-    RunDatabase database(folder.journal(), code, run_unless_interrupted, folder.job().budget.parallel);
+    ChildRuns runs(run_command(), folder.path() / "runs", folder.job().budget, [] { return false; });
+    RunDatabase database(folder.journal(), code, std::ref(runs), folder.job().budget.parallel);
     const Calibration calibration = calibrate(folder.job(), database);
     Job job = folder.job();
     job.optimiser = calibration.choice;  // whose steps the journal has

@@ -6,13 +6,15 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <mutex>
 #include <numeric>
 #include <utility>
 
 #include "forward/record/cut_file.hpp"
+#include "inverse/child_runs.hpp"
 #include "inverse/commands/draw_report.hpp"
 #include "inverse/commands/expected_cost.hpp"
-#include "inverse/commands/interruptible_run.hpp"
+#include "inverse/commands/interrupt.hpp"
 #include "inverse/manifest.hpp"
 #include "models/base/units.hpp"
 
@@ -81,6 +83,24 @@ class Progress {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
+/// Seconds per particle-step of the runs that ended: what another one may be expected to take.
+class Pace {
+ public:
+  void add(double seconds, double cost) {
+    const std::lock_guard lock(adding_);
+    if (cost > 0) seconds_per_cost_.push_back(seconds / cost);
+  }
+  std::optional<double> expected(double cost) const {
+    const std::lock_guard lock(adding_);
+    if (seconds_per_cost_.empty() || cost <= 0) return std::nullopt;
+    return cost * *std::max_element(seconds_per_cost_.begin(), seconds_per_cost_.end());
+  }
+
+ private:
+  mutable std::mutex adding_;
+  std::vector<double> seconds_per_cost_;
+};
+
 /// Longest first, so that no core waits for a long run that came last.
 std::vector<RunRequest> longest_first(const std::vector<RunRequest>& runs, const std::vector<double>& costs) {
   std::vector<std::size_t> order(runs.size());
@@ -97,17 +117,26 @@ std::vector<RunRequest> longest_first(const std::vector<RunRequest>& runs, const
 
 SceneOutcome simulate_all(SceneFolder& folder, const std::vector<RunRequest>& runs, const std::string& code) {
   const std::vector<double> costs = largest_costs(runs);
+  const fs::path scratch = folder.path() / "runs";
+  inverse::ChildRuns children(inverse::run_command(), scratch, inverse::Budget{},
+                              [] { return StopOnInterrupt::asked(); });
+  Pace pace;
   std::optional<Progress> progress;
   const inverse::RunDatabase* finished = nullptr;
   const auto run_ends = [&](const RunRequest& request, const RunRecord& record) {
     const std::size_t run = request.cut;
-    if (folder.request().keep_cuts)
-      if (const auto cut = finished->recent(request.scene))
-        forward::write_cut(folder.cut_file(run), request.scene, *cut);
+    const std::string key = finished->key(request.scene);
+    if (const auto cut = children.cut_file(key); cut && folder.request().keep_cuts)
+      forward::rename_cut(*cut, folder.cut_file(run));
+    children.journaled(key);
+    if (!record.lost) pace.add(record.wall_seconds, costs[run]);
     progress->run_ends(run, request, record);
   };
-  inverse::RunDatabase database(folder.journal(), code, run_unless_interrupted, folder.request().jobs,
-                                {.batch_begins = {}, .run_ends = run_ends});
+  inverse::RunDatabase database(folder.journal(), code,
+                                [&](const RunRequest& request, const std::string& key, std::optional<double>) {
+                                  return children(request, key, pace.expected(costs[request.cut]));
+                                },
+                                folder.request().jobs, {.batch_begins = {}, .run_ends = run_ends});
   finished = &database;
   progress.emplace(runs, costs, database);
   SceneOutcome outcome;
@@ -119,6 +148,7 @@ SceneOutcome simulate_all(SceneFolder& folder, const std::vector<RunRequest>& ru
   for (const RunRequest& run : runs) outcome.records.push_back(database.find(run.scene));
   outcome.wall_seconds = database.wall_seconds();
   outcome.simulated = database.simulated();
+  if (!outcome.interrupted) fs::remove_all(scratch);
   return outcome;
 }
 
