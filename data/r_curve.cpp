@@ -65,7 +65,8 @@ std::vector<ResistanceRow> parse_r_curve(std::string_view text, const std::strin
   std::vector<ResistanceRow> rows;
   for (const auto& cells : csv.rows) {
     const auto value = [&](std::size_t c) { return number(name, cells[*columns[c].index]) * columns[c].one; };
-    ResistanceRow row{.extension = value(0), .G = value(1), .sd = {}};
+    ResistanceRow row{
+        .extension = value(0), .line = static_cast<int>(cells[*columns[0].index].line), .G = value(1), .sd = {}};
     if (columns[2].index) row.sd = value(2);
     if (row.extension < 0) refuse(name, cells[*columns[0].index], "a crack's extension is not below zero");
     if (row.G <= 0) refuse(name, cells[*columns[1].index], "an energy release rate is above zero");

@@ -11,6 +11,7 @@ namespace kerf::data {
 /// One row of a measured R-curve.
 struct ResistanceRow {
   double extension = 0;      ///< of the crack, mm
+  int line = 0;              ///< of the file
   double G = 0;              ///< energy release rate, N/mm
   std::optional<double> sd;  ///< N/mm
 };

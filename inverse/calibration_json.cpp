@@ -95,8 +95,9 @@ Json rows(const Eigen::MatrixXd& matrix) {
 /// One observable of one cut. The fitted value is the simulated one and what the edge force adds to it.
 Json observable(const Job& job, const Fit& fit, const Misfit& misfit, std::size_t index, std::size_t k) {
   const RunRecord& run = fit.at.runs[index];
-  const std::array<Estimate, observable_count> all{run.F_c, run.F_t, run.chip_ratio, run.chip_curvature};
   const auto row = static_cast<Eigen::Index>(index), column = static_cast<Eigen::Index>(k);
+  const std::array<Estimate, observable_count> all{run.F_c, run.F_t, run.chip_ratio, run.chip_curvature,
+                                                   Estimate{fit.at.simulated(row, column), 0.0}};
   const Observations fitted = misfit.fitted(fit.at.simulated, fit.at.point, fit.residuals.edge_force);
   const std::string unit = observable_units[k];
   Json entry{{"unit", unit},
@@ -117,11 +118,12 @@ Json observable(const Job& job, const Fit& fit, const Misfit& misfit, std::size_
 Json cut(const Job& job, const Fit& fit, const Misfit& misfit, std::size_t index) {
   const MeasuredCut& measured = job.cuts[index];
   const RunRecord& run = fit.at.runs[index];
-  Json json{{"curve", job.curves[measured.curve].name},
+  Json json{{"curve", job.curves[measured.curve].file.name},
             {"line", measured.row},
             {"specimen", measured.specimen},
             {"depth_mm", measured.depth},
             {"rake_deg", in_unit(measured.rake, "deg")}};
+  if (measured.extension) json["extension_mm"] = *measured.extension;
   for (std::size_t k = 0; k < observable_count; ++k) json[observable_names[k]] = observable(job, fit, misfit, index, k);
   json["accepted"] = run.accepted;
   json["usable"] = bool(fit.at.usable[index]);

@@ -5,18 +5,21 @@
 namespace kerf::inverse {
 namespace {
 
-Estimate& estimate(RunRecord& run, Eigen::Index observable) {
+/// Null for what is not in the record itself: a specimen is the same at both fidelities.
+Estimate* estimate(RunRecord& run, Eigen::Index observable) {
   switch (static_cast<Observable>(observable)) {
     case Observable::F_c:
-      return run.F_c;
+      return &run.F_c;
     case Observable::F_t:
-      return run.F_t;
+      return &run.F_t;
     case Observable::chip_ratio:
-      return run.chip_ratio;
+      return &run.chip_ratio;
     case Observable::chip_curvature:
+      return &run.chip_curvature;
+    case Observable::resistance:
       break;
   }
-  return run.chip_curvature;
+  return nullptr;
 }
 
 }  // namespace
@@ -50,8 +53,9 @@ void FidelityCorrection::apply(const Eigen::VectorXd& point, std::size_t cut, Ru
   const auto row = static_cast<Eigen::Index>(cut);
   for (Eigen::Index k = 0; k < offset_.cols(); ++k) {
     const double change = offset_(row, k) + slopes_[static_cast<std::size_t>(k)].row(row).dot(point - point_);
-    Estimate& observable = estimate(coarse, k);
-    observable.value = LocalModel::is_logarithmic(k) ? observable.value * std::exp(change) : observable.value + change;
+    if (Estimate* observable = estimate(coarse, k))
+      observable->value =
+          LocalModel::is_logarithmic(k) ? observable->value * std::exp(change) : observable->value + change;
   }
 }
 

@@ -21,10 +21,13 @@ std::string copy_name(std::size_t index, const std::string& original) {
   return fmt::format("inputs/{}_{}", index, fs::path(original).filename().string());
 }
 
-/// The inputs in a fixed order: job, scene, curves.
+/// The inputs in a fixed order: job, scene, curves with their own scenes.
 std::vector<const InputFile*> inputs(const Job& job) {
   std::vector<const InputFile*> all{&job.source, &job.scene_file};
-  for (const InputFile& curve : job.curves) all.push_back(&curve);
+  for (const MeasuredCurve& curve : job.curves) {
+    all.push_back(&curve.file);
+    if (curve.specimen_file) all.push_back(&*curve.specimen_file);
+  }
   return all;
 }
 

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "data/curve.hpp"
+#include "data/r_curve.hpp"
 #include "forward/scene/preset.hpp"
 #include "forward/scene/scene.hpp"
 #include "inverse/derived.hpp"
@@ -157,9 +158,11 @@ std::optional<Estimate> measured_value(const data::CurvePoint& point, Observable
     case Observable::chip_ratio:
       return estimate(point.chip_ratio);
     case Observable::chip_curvature:
-      break;
+      return curvature(point.curl_radius);
+    case Observable::resistance:
+      break;  // no cut shows it
   }
-  return curvature(point.curl_radius);
+  return std::nullopt;
 }
 
 void add_cuts(Job& job, const Values& values, const data::Curve& curve) {
@@ -172,7 +175,7 @@ void add_cuts(Job& job, const Values& values, const data::Curve& curve) {
                     .row = static_cast<std::size_t>(point.line),
                     .depth = point.depth,
                     .rake = point.rake,
-                    .specimen = point.specimen.empty() ? job.curves.back().name : point.specimen,
+                    .specimen = point.specimen.empty() ? job.curves.back().file.name : point.specimen,
                     .specimen_error = values.number("specimen_error"),
                     .measured = {}};
     for (const Observable observable : job.observables)
@@ -182,6 +185,39 @@ void add_cuts(Job& job, const Values& values, const data::Curve& curve) {
   if (job.cuts.size() == before)
     throw InputError(fmt::format("{}: no point of {} is left by this [[curve]]'s shallowest, deepest and specimen",
                                  values.where("file"), values.text("file")));
+}
+
+InputFile load(const std::string& name, const Locate& locate) {
+  return {.name = name, .content = read_file(locate(name))};
+}
+
+/// The points of an R-curve; one simulated pull of the specimen answers for all of them.
+void add_resistance(Job& job, const Values& values, const Locate& locate) {
+  MeasuredCurve& curve = job.curves.back();
+  curve.specimen_file = load(values.text("scene"), locate);
+  curve.specimen = Document::parse(curve.specimen_file->content, locate(curve.specimen_file->name).string());
+  apply_settings(curve.changes, *curve.specimen, forward::scene_blocks(), values.where("changes"));
+  const forward::Scene scene = forward::read_scene(*curve.specimen);
+  if (!scene.grips)
+    throw InputError(fmt::format("{}: [[curve]] scene = \"{}\" has no [grips]: only a specimen shows an R-curve",
+                                 values.where("scene"), values.text("scene")));
+  for (const char* key : {"shallowest", "deepest", "specimen"})
+    if (values.has(key))
+      throw InputError(fmt::format("{}: [[curve]] {} chooses among cuts, but with a scene the file is an R-curve",
+                                   values.where(key), key));
+  const auto k = static_cast<std::size_t>(Observable::resistance);
+  for (const data::ResistanceRow& row : data::parse_r_curve(curve.file.content, locate(curve.file.name).string())) {
+    MeasuredCut point{.curve = job.curves.size() - 1,
+                      .row = static_cast<std::size_t>(row.line),
+                      .depth = scene.cut.depth,
+                      .rake = 0,
+                      .extension = row.extension,
+                      .specimen = curve.file.name,
+                      .specimen_error = values.number("specimen_error"),
+                      .measured = {}};
+    point.measured[k] = Estimate{row.G, row.sd.value_or(0)};
+    job.cuts.push_back(point);
+  }
 }
 
 void require_observables(const Job& job, const Contents& contents) {
@@ -243,10 +279,6 @@ std::vector<NumericsChoice> read_numerics(const Contents& contents, const Docume
   return all;
 }
 
-InputFile load(const std::string& name, const Locate& locate) {
-  return {.name = name, .content = read_file(locate(name))};
-}
-
 std::size_t whole_number(const Values& values, std::string_view key) {
   const double value = values.number(key);
   if (value != std::floor(value))
@@ -266,7 +298,8 @@ std::string InputFile::hash() const {
 
 std::string Job::identity() const {
   std::string all = source.hash() + scene_file.hash();
-  for (const InputFile& curve : curves) all += curve.hash();
+  for (const MeasuredCurve& curve : curves)
+    all += curve.file.hash() + (curve.specimen_file ? curve.specimen_file->hash() : "");
   return sha256(all);
 }
 
@@ -287,7 +320,6 @@ Job read_job(const fs::path& file, const std::string& name, const Locate& locate
           .source = std::move(source),
           .scene_file = std::move(scene),
           .curves = {},
-          .curve_changes = {},
           .cuts = {},
           .scene = base,
           .free = read_free_parameters(contents, base),
@@ -309,10 +341,22 @@ Job read_job(const fs::path& file, const std::string& name, const Locate& locate
       job.observables.push_back(static_cast<Observable>(k));
   }
   for (const Values& values : contents.all("curve")) {
-    job.curves.push_back(load(values.text("file"), locate));
-    job.curve_changes.push_back(values.has("changes") ? values.list("changes") : std::vector<std::string>());
-    add_cuts(job, values, data::parse_curve(job.curves.back().content, locate(job.curves.back().name).string()));
+    job.curves.push_back({.file = load(values.text("file"), locate),
+                          .changes = values.has("changes") ? values.list("changes") : std::vector<std::string>(),
+                          .specimen_file = {},
+                          .specimen = {}});
+    if (values.has("scene")) {
+      add_resistance(job, values, locate);
+      continue;
+    }
+    const InputFile& file = job.curves.back().file;
+    add_cuts(job, values, data::parse_curve(file.content, locate(file.name).string()));
   }
+  const auto is_pull = [](const MeasuredCut& cut) { return cut.extension.has_value(); };
+  const bool pulls = std::any_of(job.cuts.begin(), job.cuts.end(), is_pull);
+  if (pulls &&
+      std::find(job.observables.begin(), job.observables.end(), Observable::resistance) == job.observables.end())
+    job.observables.push_back(Observable::resistance);
   require_observables(job, contents);
 
   if (contents.has("edge_force")) {

@@ -16,28 +16,31 @@
 namespace kerf::inverse {
 
 /// What a measured cut and a simulated cut are compared by.
-enum class Observable : std::size_t { F_c, F_t, chip_ratio, chip_curvature };
-inline constexpr std::size_t observable_count = 4;
+enum class Observable : std::size_t { F_c, F_t, chip_ratio, chip_curvature, resistance };
+inline constexpr std::size_t observable_count = 5;
 inline constexpr std::array<const char*, observable_count> observable_names{"F_c", "F_t", "chip_ratio",
-                                                                            "chip_curvature"};
+                                                                            "chip_curvature", "G_R"};
 /// Unit in which each is shown.
-inline constexpr std::array<const char*, observable_count> observable_units{"N/m", "N/m", "1", "1/mm"};
-/// Forces and thickness keep their sign and are compared to simulations on a logarithmic scale of the model; the
-/// transverse force and the curvature may pass through zero.
+inline constexpr std::array<const char*, observable_count> observable_units{"N/m", "N/m", "1", "1/mm", "J/m^2"};
+/// Forces, thickness and resistance keep their sign and are compared to simulations on a logarithmic scale of the
+/// model; the transverse force and the curvature may pass through zero.
 constexpr bool is_positive(std::size_t observable) {
   return observable == static_cast<std::size_t>(Observable::F_c) ||
-         observable == static_cast<std::size_t>(Observable::chip_ratio);
+         observable == static_cast<std::size_t>(Observable::chip_ratio) ||
+         observable == static_cast<std::size_t>(Observable::resistance);
 }
 
-/// One measured point of a curve. An observable that was not measured, or that the job does not use, is absent.
+/// One measured point of a curve: a cut, or what the pull on a specimen shows at one extension of its crack, of which
+/// one simulation gives all points. An observable that was not measured, or that the job does not use, is absent.
 struct MeasuredCut {
-  std::size_t curve = 0;      ///< index into Job::curves
-  std::size_t row = 0;        ///< line of the point in its file
-  double depth = 0;           ///< mm
-  double rake = 0;            ///< rad
-  std::string specimen;       ///< that was cut; its curve's name when none is named
-  double specimen_error = 0;  ///< share by which everything measured on this specimen is off together
-  std::array<std::optional<Estimate>, observable_count> measured;  ///< N/mm, N/mm, 1, 1/mm
+  std::size_t curve = 0;                 ///< index into Job::curves
+  std::size_t row = 0;                   ///< line of the point in its file
+  double depth = 0;                      ///< mm
+  double rake = 0;                       ///< rad
+  std::optional<double> extension = {};  ///< of a specimen's crack, mm
+  std::string specimen;                  ///< that was cut; its curve's name when none is named
+  double specimen_error = 0;             ///< share by which everything measured on this specimen is off together
+  std::array<std::optional<Estimate>, observable_count> measured;  ///< N/mm, N/mm, 1, 1/mm, N/mm
 };
 
 /// A number of the scene that the calibration is to find.
@@ -137,12 +140,19 @@ struct InputFile {
   std::string hash() const;
 };
 
+/// One [[curve]] of a job.
+struct MeasuredCurve {
+  InputFile file;
+  std::vector<std::string> changes;        ///< of the scene for its cuts, PATH=VALUE
+  std::optional<InputFile> specimen_file;  ///< an R-curve's own scene ...
+  std::optional<Document> specimen;        ///< ... which coarse runs and other numerics leave as it is
+};
+
 /// A calibration, fully read: nothing in it depends on the file system any more.
 struct Job {
   std::string title;
   InputFile source, scene_file;
-  std::vector<InputFile> curves;                        ///< one per [[curve]]
-  std::vector<std::vector<std::string>> curve_changes;  ///< of the scene for its cuts, PATH=VALUE; one per [[curve]]
+  std::vector<MeasuredCurve> curves;
   std::vector<MeasuredCut> cuts;
   Document scene;  ///< the base scene
   std::vector<FreeParameter> free;

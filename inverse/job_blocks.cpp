@@ -20,12 +20,17 @@ std::vector<Block> declare() {
                       text("preset", "what accuracy may cost: written over the scene's own keys (`kerf list preset`)",
                            {forward::preset_names.begin(), forward::preset_names.end()})
                           .if_given(),
-                      list("observables", "what simulated and measured cuts are compared by", observables())},
+                      list("observables", "what simulated and measured cuts are compared by; R-curves always by G_R",
+                           observables())},
        .required = true},
       {.path = "curve",
        .variant = "",
        .meaning = "measured points; each one becomes a simulated cut of its depth and rake",
        .parameters = {text("file", "CSV file with a unit in every column's header, a path relative to this file"),
+                      text("scene",
+                           "the file is an R-curve (crack_extension, G) of this specimen, a scene with [grips], a path "
+                           "relative to this file; free parameters stand in it under the same paths")
+                          .if_given(),
                       number("shallowest", "mm", 0, 1e3, "points at smaller depths are left out").if_given(),
                       number("deepest", "mm", 0, 1e3, "points at greater depths are left out").if_given(),
                       list("changes",

@@ -65,7 +65,7 @@ LocalModel LocalModel::by_differences(Objective& objective, const Evaluation& ba
       }
       const auto row = static_cast<Eigen::Index>(slope.cut);
       const Eigen::Index j = slope.parameter;
-      const Eigen::RowVectorXd simulated = observations(runs[p]);
+      const Eigen::RowVectorXd simulated = objective.misfit().observations(slope.cut, runs[p]);
       for (Eigen::Index k = 0; k < simulated.size(); ++k) {
         if (objective.misfit().weights()(row, k) == 0) continue;
         double& mean = model.slopes_[static_cast<std::size_t>(k)](row, j);

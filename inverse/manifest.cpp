@@ -68,7 +68,10 @@ Json code_and_machine(const std::string& code) {
 
 Json manifest(const Job& job, const std::string& code, double wall_seconds) {
   Json inputs = Json::array({input(job.source), input(job.scene_file)});
-  for (const InputFile& curve : job.curves) inputs.push_back(input(curve));
+  for (const MeasuredCurve& curve : job.curves) {
+    inputs.push_back(input(curve.file));
+    if (curve.specimen_file) inputs.push_back(input(*curve.specimen_file));
+  }
   Json manifest = code_and_machine(code);
   manifest["inputs"] = std::move(inputs);
   manifest["job"] = Document::parse(job.source.content, job.source.name).canonical();

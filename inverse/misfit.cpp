@@ -15,13 +15,15 @@ constexpr Eigen::Index F_c = static_cast<Eigen::Index>(Observable::F_c);
 constexpr Eigen::Index F_t = static_cast<Eigen::Index>(Observable::F_t);
 constexpr Eigen::Index chip_ratio = static_cast<Eigen::Index>(Observable::chip_ratio);
 constexpr Eigen::Index chip_curvature = static_cast<Eigen::Index>(Observable::chip_curvature);
+constexpr Eigen::Index G_R = static_cast<Eigen::Index>(Observable::resistance);
 
 /// Column of a curve that holds the scatter of an observable.
-constexpr std::array<const char*, observable_count> error_columns{"Fc_sd", "Ft_sd", "chip_ratio_sd", "curl_radius_sd"};
+constexpr std::array<const char*, observable_count> error_columns{"Fc_sd", "Ft_sd", "chip_ratio_sd", "curl_radius_sd",
+                                                                  "G_sd"};
 
 std::array<double, observable_count> simulation_errors(const RunRecord& run) {
   return {run.F_c.standard_error, run.F_t.standard_error, run.chip_ratio.standard_error,
-          run.chip_curvature.standard_error};
+          run.chip_curvature.standard_error, 0.0};
 }
 
 Eigen::Index rows(const std::vector<MeasuredCut>& cuts) {
@@ -40,12 +42,14 @@ std::size_t count(const CutMask& mask) {
   return static_cast<std::size_t>(std::count(mask.begin(), mask.end(), true));
 }
 
-Eigen::RowVectorXd observations(const RunRecord& run) {
+Eigen::RowVectorXd Misfit::observations(std::size_t cut, const RunRecord& run) const {
   Eigen::RowVectorXd row(static_cast<Eigen::Index>(observable_count));
   row[F_c] = run.F_c.value;
   row[F_t] = run.F_t.value;
   row[chip_ratio] = run.chip_ratio.value;
   row[chip_curvature] = run.chip_curvature.value;
+  const std::optional<double>& extension = extensions_[cut];
+  row[G_R] = extension ? resistance(run, *extension) : std::numeric_limits<double>::quiet_NaN();
   return row;
 }
 
@@ -61,6 +65,7 @@ Misfit::Misfit(const Job& job, const ParameterSpace& space) : space_(&space), ed
   std::map<std::pair<std::string, Eigen::Index>, Common> commons;  // by specimen and kind of measurement
   for (Eigen::Index i = 0; i < rows(job.cuts); ++i) {
     const MeasuredCut& cut = job.cuts[static_cast<std::size_t>(i)];
+    extensions_.push_back(cut.extension);
     for (Eigen::Index k = 0; k < columns; ++k) {
       const std::optional<Estimate>& measured = cut.measured[static_cast<std::size_t>(k)];
       if (!measured) continue;
@@ -72,7 +77,7 @@ Misfit::Misfit(const Job& job, const ParameterSpace& space) : space_(&space), ed
         throw InputError(
             fmt::format("{}:{}: {} has no standard error to weigh it by; add a column {}, or give [discrepancy] "
                         "relative in the job",
-                        job.curves[cut.curve].name, cut.row, observable_names[static_cast<std::size_t>(k)],
+                        job.curves[cut.curve].file.name, cut.row, observable_names[static_cast<std::size_t>(k)],
                         error_columns[static_cast<std::size_t>(k)]));
       if (cut.specimen_error == 0) continue;
       error(ErrorSource::specimen)(i, k) = cut.specimen_error * measured->value;
@@ -84,7 +89,7 @@ Misfit::Misfit(const Job& job, const ParameterSpace& space) : space_(&space), ed
 
 bool Misfit::is_usable(std::size_t cut, const RunRecord& run) const {
   if (!run.accepted) return false;
-  const Eigen::RowVectorXd simulated = observations(run);
+  const Eigen::RowVectorXd simulated = observations(cut, run);
   for (Eigen::Index k = 0; k < simulated.size(); ++k) {
     if (weights_(static_cast<Eigen::Index>(cut), k) == 0) continue;
     if (!std::isfinite(simulated[k]) || (is_positive(static_cast<std::size_t>(k)) && simulated[k] <= 0)) return false;

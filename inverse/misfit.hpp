@@ -35,8 +35,6 @@ struct Evaluation {
   Observations simulated;
 };
 
-Eigen::RowVectorXd observations(const RunRecord& run);
-
 /// What a relative roughness of an observable is a share of: its value, or F_c/10 where F_t is smaller.
 double typical_size(const Observations& simulated, Eigen::Index cut, Eigen::Index observable);
 
@@ -60,6 +58,9 @@ class Misfit {
  public:
   /// Throws InputError when a measured value has no error to weigh it by.
   Misfit(const Job& job, const ParameterSpace& space);
+
+  /// What a run shows of a cut: one number per Observable; of a specimen the resistance at the point's extension.
+  Eigen::RowVectorXd observations(std::size_t cut, const RunRecord& run) const;
 
   /// A run that can be compared: accepted, with finite observables where some were measured, F_c and chip ratio
   /// positive.
@@ -140,6 +141,7 @@ class Misfit {
   const ParameterSpace* space_;
   std::optional<EdgeForce> edge_force_;
   Observations measured_, weights_;
+  std::vector<std::optional<double>> extensions_;        ///< of the cuts that are points of an R-curve
   std::array<Observations, error_source_count> errors_;  ///< standard deviations by source; those of priors stay 0
   /// What shares one error: places (cut, observable).
   struct Common {

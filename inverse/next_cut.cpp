@@ -39,6 +39,7 @@ std::vector<MeasuredCut> candidate_cuts(const Job& job) {
   double shallowest = job.cuts.front().depth, deepest = shallowest;
   std::set<double> rakes;
   for (const MeasuredCut& cut : job.cuts) {
+    if (cut.extension) continue;
     shallowest = std::min(shallowest, cut.depth);
     deepest = std::max(deepest, cut.depth);
     rakes.insert(cut.rake);
@@ -57,7 +58,8 @@ Job with_cuts(const Job& job, std::vector<MeasuredCut> cuts) {
   Job other = job;
   other.cuts = std::move(cuts);
   for (MeasuredCut& cut : other.cuts)
-    for (auto& measured : cut.measured) measured = Estimate{1, 1};  // weighed once they are predicted
+    for (std::size_t k = 0; k < observable_count; ++k)  // weighed once they are predicted
+      if (static_cast<Observable>(k) != Observable::resistance) cut.measured[k] = Estimate{1, 1};
   return other;
 }
 

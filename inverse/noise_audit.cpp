@@ -17,11 +17,12 @@ constexpr std::array jitters{1.0 / 12, 1.0 / 6};  // depths of cut: a third and 
 constexpr double least_step = 0.02, largest_step = 0.15;
 constexpr double least_noise = 1e-6, largest_noise = 0.1;
 
-/// Indices of the cuts to audit: the middles of equal parts of the list by depth, as far as they are usable.
+/// Indices of the cuts to audit: the middles of equal parts of the list by depth, as far as they are usable. A
+/// specimen cannot be begun a fraction of a cell farther on: its notch is what was measured.
 std::vector<std::size_t> audited(const Objective& objective, const Evaluation& base) {
   std::vector<std::size_t> by_depth;
   for (std::size_t cut = 0; cut < objective.cuts(); ++cut)
-    if (base.usable[cut]) by_depth.push_back(cut);
+    if (base.usable[cut] && !objective.job().cuts[cut].extension) by_depth.push_back(cut);
   std::stable_sort(by_depth.begin(), by_depth.end(),
                    [&](std::size_t a, std::size_t b) { return objective.depth(a) < objective.depth(b); });
   const std::size_t parts = (by_depth.size() + cuts_per_audited - 1) / cuts_per_audited;
@@ -80,7 +81,7 @@ class Auditor {
     std::vector<double> values{base_.simulated(row, k) / unit};
     for (std::size_t i = from; i < from + count; ++i) {
       if (!objective_.misfit().is_usable(cut, runs[i]) || runs[i].branch != base_.runs[cut].branch) return {};
-      values.push_back(observations(runs[i])[k] / unit);
+      values.push_back(objective_.misfit().observations(cut, runs[i])[k] / unit);
     }
     return values;
   }

@@ -15,7 +15,8 @@ Objective::Objective(const Job& job, const ParameterSpace& space, Misfit& misfit
 
 RunRequest Objective::request(const Probe& probe) const {
   const auto& [point, cut, jitter] = probe;
-  std::string label = fmt::format("{}depth {:.4g} mm", fidelity, job_.cuts[cut].depth);
+  const bool specimen = job_.cuts[cut].extension.has_value();
+  std::string label = fidelity + (specimen ? "specimen" : fmt::format("depth {:.4g} mm", job_.cuts[cut].depth));
   for (Eigen::Index j = 0; j < space_.dimension(); ++j) {
     const FreeParameter& parameter = space_.parameters()[static_cast<std::size_t>(j)];
     label +=
@@ -60,7 +61,7 @@ std::vector<Evaluation> Objective::evaluate(const std::vector<Eigen::VectorXd>& 
     for (std::size_t cut = 0; cut < cuts(); ++cut) {
       evaluation.runs.push_back(records[p * cuts() + cut]);
       evaluation.usable.push_back(misfit_.is_usable(cut, evaluation.runs.back()));
-      evaluation.simulated.row(static_cast<Eigen::Index>(cut)) = observations(evaluation.runs.back());
+      evaluation.simulated.row(static_cast<Eigen::Index>(cut)) = misfit_.observations(cut, evaluation.runs.back());
     }
     evaluations.push_back(std::move(evaluation));
   }

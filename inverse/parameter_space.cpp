@@ -11,6 +11,10 @@ namespace {
 
 constexpr const char* friction_path = "friction.coefficient";
 
+std::string table_of(const std::string& path) {
+  return path.substr(0, path.rfind('.'));
+}
+
 double read_number(const Contents& contents, const std::string& path) {
   const std::size_t dot = path.rfind('.');
   return contents.at(path.substr(0, dot)).number(path.substr(dot + 1));
@@ -20,7 +24,7 @@ double read_number(const Contents& contents, const std::string& path) {
 
 ParameterSpace::ParameterSpace(const Job& job)
     : base_(job.scene),
-      curve_changes_(job.curve_changes),
+      curves_(job.curves),
       free_(job.free),
       ties_(job.ties),
       lower_(dimension()),
@@ -62,19 +66,24 @@ Eigen::VectorXd ParameterSpace::clamp(const Eigen::VectorXd& point) const {
 
 Document ParameterSpace::scene(const Eigen::VectorXd& point, const MeasuredCut& cut) const {
   const std::vector<Block>& blocks = forward::scene_blocks();
-  Document patched = base_;
-  if (cut.curve < curve_changes_.size())
-    apply_settings(curve_changes_[cut.curve], patched, blocks, "[[curve]] changes");
-  patched.set_number("cut.depth", cut.depth, blocks);
-  patched.set_number("tool.rake", cut.rake, blocks);
+  const bool specimen = cut.extension.has_value();
+  Document patched = specimen ? *curves_[cut.curve].specimen : base_;
+  if (!specimen) {
+    if (cut.curve < curves_.size()) apply_settings(curves_[cut.curve].changes, patched, blocks, "[[curve]] changes");
+    patched.set_number("cut.depth", cut.depth, blocks);
+    patched.set_number("tool.rake", cut.rake, blocks);
+  }
+  const auto absent = [&](const std::string& path) { return specimen && !patched.has(table_of(path)); };
   for (Eigen::Index j = 0; j < dimension(); ++j) {
     // exp(log(bound)) may miss the bound by a rounding; the physical range of the parameter would then refuse it.
     const FreeParameter& parameter = free_[static_cast<std::size_t>(j)];
+    if (absent(parameter.path)) continue;
     const double inside = std::clamp(value(j, point[j]), parameter.lower, parameter.upper);
     patched.set_number(parameter.path, inside, blocks);
   }
   for (const Tie& tie : ties_)
-    patched.set_number(tie.path, tie.factor * read_number(patched.read(blocks), tie.of), blocks);
+    if (!absent(tie.path) && !absent(tie.of))
+      patched.set_number(tie.path, tie.factor * read_number(patched.read(blocks), tie.of), blocks);
   return patched;
 }
 

@@ -29,7 +29,7 @@ class ParameterSpace {
   Eigen::VectorXd clamp(const Eigen::VectorXd& point) const;
 
   /// The base scene with the changes of its curve, the depth and rake of `cut`, the parameters at `point` and the ties,
-  /// in this order.
+  /// in this order. Of a specimen: its own scene, with those parameters and ties whose tables it has.
   Document scene(const Eigen::VectorXd& point, const MeasuredCut& cut) const;
 
   /// The coefficient of friction at `point`, and the free parameter that it is (-1: fixed by the scene).
@@ -38,7 +38,7 @@ class ParameterSpace {
 
  private:
   Document base_;
-  std::vector<std::vector<std::string>> curve_changes_;
+  std::vector<MeasuredCurve> curves_;
   std::vector<FreeParameter> free_;
   std::vector<Tie> ties_;
   Eigen::VectorXd lower_, upper_;

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "forward/record/result_json.hpp"
+#include "models/base/units.hpp"
 
 namespace kerf::inverse {
 namespace {
@@ -56,6 +57,30 @@ RunRecord summarise(const forward::CutResult& result) {
 double RunRecord::core_seconds() const {
   const Json::json_pointer place("/cost/processor_s");
   return result.contains(place) && result.at(place).is_number() ? result.at(place).get<double>() : 0;
+}
+
+double resistance(const RunRecord& record, double extension) {
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  const auto found = record.result.find("r_curve");
+  if (!record.result.is_object() || found == record.result.end()) return none;
+  const Json& extensions = found->at("extension");
+  const Json& resistances = found->at("G_R");
+  double before = 0, at_before = none;  // the last level that had not grown farther
+  for (std::size_t i = 0; i < extensions.size(); ++i) {
+    if (!extensions[i].is_number() || !resistances[i].is_number()) continue;
+    const double here = extensions[i].get<double>();
+    const bool grows_next = i + 1 < extensions.size() && extensions[i + 1] != extensions[i];
+    if (!grows_next) continue;
+    const double at_here = resistances[i].get<double>();
+    if (here <= extension) {
+      before = here;
+      at_before = at_here;
+      continue;
+    }
+    const double share = (extension - before) / (here - before);
+    return (at_before + share * (at_here - at_before)) * consistent_units_in("J/m^2");
+  }
+  return none;
 }
 
 RunRecord refused(std::string cause) {

@@ -35,6 +35,10 @@ struct RunRecord {
 
 RunRecord summarise(const forward::CutResult& result);
 
+/// G_R of a specimen's run where its crack has grown by `extension`, N/mm: what it took to grow on, linear between the
+/// cells that the crack passed. NaN where it did not grow that far, and of a run without an R-curve.
+double resistance(const RunRecord& record, double extension);
+
 /// A run that never started because the patched scene was refused by its reader.
 RunRecord refused(std::string cause);
 

@@ -43,7 +43,9 @@ class ProgressLines {
     ++done_;
     --left_;
     std::string outcome;
-    if (record.accepted) {
+    if (record.accepted && record.result.contains("r_curve")) {
+      outcome = fmt::format("cracked {:.1f} mm", record.result["r_curve"]["extension"].back().get<double>());
+    } else if (record.accepted) {
       const double one = consistent_units_in("N/m");
       outcome = fmt::format("F_c {:.0f}, F_t {:.0f} N/m, chip ratio {:.2f}", record.F_c.value / one,
                             record.F_t.value / one, record.chip_ratio.value);
@@ -64,19 +66,6 @@ class ProgressLines {
   std::size_t max_runs_, done_ = 0, left_ = 0;
 };
 
-/// Gives a cut's file another name; its XDMF description names the file it describes.
-void rename_cut(const fs::path& from, const fs::path& to) {
-  fs::create_directories(to.parent_path());
-  fs::rename(from, to);
-  const fs::path described = forward::xdmf_beside(from);
-  std::string xdmf = read_file(described);
-  const std::string old_name = from.filename().string(), new_name = to.filename().string();
-  for (std::size_t at = xdmf.find(old_name); at != std::string::npos; at = xdmf.find(old_name, at + new_name.size()))
-    xdmf.replace(at, old_name.size(), new_name);
-  write_atomically(forward::xdmf_beside(to), xdmf);
-  fs::remove(described);
-}
-
 /// The cuts at the estimate in full. Those whose files are gone are simulated once more.
 std::size_t keep_cuts(const inverse::Folder& folder, const inverse::Calibration& calibration,
                       const inverse::RunDatabase& database, inverse::ChildRuns& runs) {
@@ -84,6 +73,8 @@ std::size_t keep_cuts(const inverse::Folder& folder, const inverse::Calibration&
   const inverse::ParameterSpace space(job);
   std::size_t simulated = 0;
   for (std::size_t index = 0; index < job.cuts.size(); ++index) {
+    if (index > 0 && job.cuts[index].extension && job.cuts[index - 1].curve == job.cuts[index].curve)
+      continue;  // one pull shows the whole R-curve
     const Document scene = space.scene(calibration.fit.at.point, job.cuts[index]);
     const fs::path file = folder.path() / "cuts" / fmt::format("{:03}.json", index + 1);
     const std::string key = database.key(scene);
@@ -100,7 +91,7 @@ std::size_t keep_cuts(const inverse::Folder& folder, const inverse::Calibration&
     }
     const std::optional<fs::path> cut = runs.cut_file(key);
     if (!cut) continue;
-    rename_cut(*cut, fs::path(file).replace_extension(".h5"));
+    forward::rename_cut(*cut, fs::path(file).replace_extension(".h5"));
     ordered_json json = record.result;
     json["run"] = key;
     write_atomically(file, json.dump(2) + "\n");
@@ -108,15 +99,17 @@ std::size_t keep_cuts(const inverse::Folder& folder, const inverse::Calibration&
   return simulated;
 }
 
-/// Every curve of the job by closed forms and intercepts; several curves count as one.
+/// Every planing curve of the job by closed forms and intercepts; several curves count as one.
 void write_reduction(const inverse::Folder& folder) {
   data::Curve all;
   std::vector<std::string> notes;
-  for (const inverse::InputFile& file : folder.job().curves) {
-    const data::Curve curve = data::parse_curve(file.content, file.name);
+  for (const inverse::MeasuredCurve& measured : folder.job().curves) {
+    if (measured.specimen) continue;
+    const data::Curve curve = data::parse_curve(measured.file.content, measured.file.name);
     all.points.insert(all.points.end(), curve.points.begin(), curve.points.end());
     notes.insert(notes.end(), curve.notes.begin(), curve.notes.end());
   }
+  if (all.points.empty()) return;
   const forward::Scene scene = forward::read_scene(folder.job().scene);
   chip::FitOptions options;
   std::visit(

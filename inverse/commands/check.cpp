@@ -1,14 +1,18 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "data/curve.hpp"
+#include "data/r_curve.hpp"
 #include "forward/bodies/scene.hpp"
 #include "forward/scene/scene.hpp"
 #include "inverse/commands/commands.hpp"
 #include "inverse/commands/job_study_session.hpp"
 #include "inverse/job.hpp"
+#include "models/base/atomic_file.hpp"
 #include "models/base/document.hpp"
 #include "models/base/error.hpp"
 #include "models/base/units.hpp"
@@ -16,7 +20,16 @@
 namespace kerf::commands {
 namespace {
 
+void check_r_curve(const std::filesystem::path& file) {
+  const std::vector<data::ResistanceRow> rows = data::read_r_curve(file);
+  const auto by_extension = [](const auto& a, const auto& b) { return a.extension < b.extension; };
+  const auto [first, last] = std::minmax_element(rows.begin(), rows.end(), by_extension);
+  fmt::print("{}: ok, a resistance curve of {} points, extensions {:g} to {:g} mm\n", file.string(), rows.size(),
+             first->extension, last->extension);
+}
+
 void check_curve(const std::filesystem::path& file) {
+  if (read_file(file).find("crack_extension[") != std::string::npos) return check_r_curve(file);
   const data::Curve curve = data::read_curve(file);
   const double um = consistent_units_in("um");
   std::size_t chip_ratios = 0;

@@ -61,15 +61,30 @@ def _json(file):
 OBSERVABLES = ("F_c", "F_t", "chip_ratio", "chip_curvature")
 
 
+def planed(result):
+    """The cuts; the other entries are points of R-curves."""
+    return [cut for cut in result.get("cuts", []) if "extension_mm" not in cut]
+
+
+def pulled(result):
+    """[(label, points by extension)]: the R-curves, one per specimen."""
+    groups = {}
+    for point in result.get("cuts", []):
+        if "extension_mm" in point:
+            groups.setdefault(point.get("curve", ""), []).append(point)
+    return [(Path(file).stem.replace("_", " "), sorted(points, key=lambda point: point["extension_mm"]))
+            for file, points in sorted(groups.items())]
+
+
 def compared_observables(result):
     return [key for key in OBSERVABLES if any(isinstance(cut.get(key), dict) and finite(cut[key].get("measured"))
-                                              for cut in result.get("cuts", []))]
+                                              for cut in planed(result))]
 
 
 def curve_groups(result):
     """[(label, cuts by depth)]: the measured cuts of one curve at one rake, named by what tells them apart."""
     groups = {}
-    for cut in result.get("cuts", []):
+    for cut in planed(result):
         groups.setdefault((cut.get("curve", ""), round(cut.get("rake_deg") or 0, 3)), []).append(cut)
     files, rakes = {key[0] for key in groups}, {key[1] for key in groups}
 
@@ -172,7 +187,7 @@ def measured_points(result):
 
 
 def _first_rake(result):
-    cuts = result.get("cuts", [])
+    cuts = planed(result)
     return [cut for cut in cuts if cut.get("rake_deg") == cuts[0].get("rake_deg")]
 
 

@@ -4,7 +4,7 @@ costs its sentence, not the paragraph."""
 import math
 import tomllib
 
-from .calibration import compared_observables, curve_groups
+from .calibration import compared_observables, curve_groups, planed, pulled
 from .page import finite, integer, interval_text, large_unit, number, pretty_unit, with_error
 
 LAWS = {"j2": "von Mises plasticity with the Jaumann rate (J2)",
@@ -150,8 +150,12 @@ def _span(values, unit):
 
 
 def _data(result, job):
-    cuts = result.get("cuts") or []
-    observables = compared_observables(result)
+    cuts, observables = planed(result), compared_observables(result)
+    specimens = pulled(result)
+    if specimens:
+        points = sum(len(points) for _, points in specimens)
+        yield (f"The data hold {points} points of {'an R-curve' if len(specimens) == 1 else f'{len(specimens)} R-curves'}, "
+               "compared with the resistance of one simulated specimen each.")
     if not cuts or not observables:
         return
     specimens = {cut.get("specimen") for cut in cuts if cut.get("specimen")}

@@ -6,8 +6,8 @@ import re
 from markupsafe import Markup
 
 from . import fit_figures, uncertainty_figures
-from .calibration import (compared_observables, curve_groups, label_of, measured_points, method_curves, search_steps,
-                          sign_runs, simulated_curve, spending, toughness_rows, with_labels)
+from .calibration import (compared_observables, curve_groups, label_of, measured_points, method_curves, planed, pulled,
+                          search_steps, sign_runs, simulated_curve, spending, toughness_rows, with_labels)
 from .calibration_methods import methods_paragraph
 from .cut_page import add_chip, add_force_history, add_ledger, facts_of
 from .page import (Page, chip, finite, html, integer, interval_text, large_unit, number, pretty_unit, prose, symbol,
@@ -160,35 +160,49 @@ def _verdict(verdict):
 def _data(page, calibration):
     result = calibration.result
     section = page.section("Data and fitted curves", "data", "data")
-    groups, observables = curve_groups(result), compared_observables(result)
-    if not observables:
+    groups, observables, specimens = curve_groups(result), compared_observables(result), pulled(result)
+    if not observables and not specimens:
         section.missing("The result holds no measured cuts.")
         return
     known = result.get("identifiability") or {}
     scale = result.get("error_scale") or 1
-    banded = any(finite(cut[key].get("fitted_se")) for cut in result["cuts"] for key in observables
+    quantile = known.get("interval_half_width_in_se") or 1.96
+    banded = any(finite(cut[key].get("fitted_se")) for cut in result["cuts"] for key in observables + ["G_R"]
                  if isinstance(cut.get(key), dict))
-    section.figure(fit_figures.data_and_bands(groups, observables, scale, known.get("interval_half_width_in_se") or 1.96),
-                   "The simulation at the estimate through the measured depths" +
-                   (", the 95 % band of its curve that the uncertain parameters leave (dark), and with the scatter, noise "
-                    "and stated model error of a measurement added (pale)." if banded else
-                    "; it has no bands without slopes, or in a result of an older version."))
-    section.warnings([html("The cut at depth {} mm counts for nothing: {}.", number(cut["depth_mm"]),
-                           prose("; ".join(cut.get("refusals") or ["it could not be compared"])))
+    if specimens:
+        section.figure(fit_figures.data_and_bands(specimens, ["G_R"], scale, quantile, fit_figures.EXTENSION),
+                       "R-curve: one simulated pull of the specimen at the estimate, read at the measured extensions of "
+                       "its crack.")
+    if observables:
+        section.figure(fit_figures.data_and_bands(groups, observables, scale, quantile),
+                       "The simulation at the estimate through the measured depths" +
+                       (", the 95 % band of its curve that the uncertain parameters leave (dark), and with the scatter, "
+                        "noise and stated model error of a measurement added (pale)." if banded else
+                        "; it has no bands without slopes, or in a result of an older version."))
+    section.warnings([html("The {} counts for nothing: {}.",
+                           f"point at an extension of {number(cut['extension_mm'])} mm" if "extension_mm" in cut else
+                           f"cut at depth {number(cut['depth_mm'])} mm", prose("; ".join(cut.get("refusals") or ["it could not be compared"])))
                       for cut in result["cuts"] if not cut.get("usable", True)])
 
 
 def _residuals(page, result):
     groups, observables = curve_groups(result), compared_observables(result)
     observables = [key for key in observables if any(finite((cut.get(key) or {}).get("weighted_residual"))
-                                                     for cut in result["cuts"])]
-    if not observables:
+                                                     for cut in planed(result))]
+    specimens = [(label, points) for label, points in pulled(result)
+                 if any(finite(point["G_R"].get("weighted_residual")) for point in points)]
+    if not observables and not specimens:
         return
     section = page.section("Residuals", "residuals", "residuals")
+    if specimens:
+        section.figure(fit_figures.residuals(specimens, ["G_R"], fit_figures.EXTENSION),
+                       "Measured minus fitted resistance, over the standard deviation of the difference.")
+    if not observables:
+        return
     section.figure(fit_figures.residuals(groups, observables),
                    "Measured minus fitted, over the standard deviation of the difference; 95 % of them should lie between "
                    "the dashed lines.")
-    deepest = max(cut["depth_mm"] for cut in result["cuts"])
+    deepest = max(cut["depth_mm"] for cut in planed(result))
     section.text(_about_runs(sign_runs(result), *((1e3, "µm") if deepest < 0.5 else (1, "mm"))))
 
 

@@ -10,7 +10,9 @@ from .style import (ACCENT, ACCENT_LIGHT, ACCENT_PALE, INK, QUIET, RULE, SAND, W
                     svg)
 
 OBSERVABLES = {"F_c": ("cutting force F_c", "N/m"), "F_t": ("transverse force F_t", "N/m"),
-               "chip_ratio": ("chip thickness / depth", "1"), "chip_curvature": ("chip curvature", "1/mm")}
+               "chip_ratio": ("chip thickness / depth", "1"), "chip_curvature": ("chip curvature", "1/mm"),
+               "G_R": ("resistance G_R", "J/m^2")}
+DEPTH, EXTENSION = ("depth_mm", "depth of cut"), ("extension_mm", "crack extension")  # what a point is drawn against
 
 # Three families of methods, each with its own hand: the simulation is the one to look at.
 LOOK = {
@@ -126,13 +128,14 @@ MARKERS = ["o", "s", "^", "D", "v", "P", "X", "<", ">"]
 SHADES = [ACCENT, WARM, INK, "#c2922e", "#4a78b5", "#8a5a83", "#7d8b2f", "#8d9aa0", "#3c4f76"]
 
 
-def data_and_bands(groups, observables, scale, quantile):
+def data_and_bands(groups, observables, scale, quantile, along=DEPTH):
     """Measured values, the simulated curve through them and its 95 % bands: a row per curve, a panel per observable.
 
     groups: [(label, [cut, ...] by depth)] as calibration.curve_groups gives them; scale: error_scale of the fit;
     quantile: half width of a 95 % interval in standard errors.
     """
-    deepest = max(cut["depth_mm"] for _, cuts in groups for cut in cuts)
+    place, axis = along
+    deepest = max(cut[place] for _, cuts in groups for cut in cuts)
     length, depth_unit = (1e3, "µm") if deepest < 0.5 else (1, "mm")
     rows, columns = len(groups), len(observables)
     height = 280 if rows == 1 else 195
@@ -144,9 +147,9 @@ def data_and_bands(groups, observables, scale, quantile):
             light_grid(ax)
             factor, unit = large_unit(OBSERVABLES[key][1], [entry[key].get("measured") for _, all_cuts in groups
                                                             for entry in all_cuts if isinstance(entry.get(key), dict)])
-            _band(ax, cuts, key, length, factor, scale, quantile, handles)
+            _band(ax, cuts, key, place, length, factor, scale, quantile, handles)
             seen = [c for c in cuts if isinstance(c.get(key), dict) and finite(c[key].get("measured"))]
-            x = [c["depth_mm"] * length for c in seen]
+            x = [c[place] * length for c in seen]
             y = [c[key]["measured"] * factor for c in seen]
             handles["measured (± standard error)"] = ax.errorbar(
                 x, y, yerr=[(c[key].get("se") or 0) * factor for c in seen], fmt="s", color=INK, markersize=5.5,
@@ -157,7 +160,7 @@ def data_and_bands(groups, observables, scale, quantile):
             if line == 0:
                 ax.set_title(OBSERVABLES[key][0] + (f", {pretty_unit(unit)}" if unit != "1" else ""))
             if line == rows - 1:
-                ax.set_xlabel(f"depth of cut, {depth_unit}")
+                ax.set_xlabel(f"{axis}, {depth_unit}")
         if rows > 1:
             row[0].set_ylabel(label)
     for ax in axes[rows]:
@@ -167,7 +170,7 @@ def data_and_bands(groups, observables, scale, quantile):
     return svg(fig, "measured values, simulated curves and their 95 percent bands")
 
 
-def _band(ax, cuts, key, length, factor, scale, quantile, handles):
+def _band(ax, cuts, key, place, length, factor, scale, quantile, handles):
     """The fitted curve; dark what the parameters leave open, paler what a measurement there may scatter."""
     known = {}
     for cut in cuts:  # repeats at one depth are one simulation; the least scatter of them is kept
@@ -175,7 +178,7 @@ def _band(ax, cuts, key, length, factor, scale, quantile, handles):
         if not cut.get("usable", True) or not isinstance(entry, dict) or not finite(entry.get("fitted")):
             continue
         scatter = entry.get("residual_sd")
-        x = cut["depth_mm"] * length
+        x = cut[place] * length
         known[x] = (entry["fitted"], entry.get("fitted_se"),
                     min(filter(finite, (scatter, known.get(x, (0, 0, None))[2])), default=None))
     if not known:
@@ -195,15 +198,16 @@ def _band(ax, cuts, key, length, factor, scale, quantile, handles):
     handles["simulation"] = ax.plot(x, value, "-o", color=ACCENT, markersize=4, linewidth=2, zorder=3)[0]
 
 
-def residuals(groups, observables):
+def residuals(groups, observables, along=DEPTH):
     """(measured − fitted)/standard deviation against depth, and against rake where there are several.
 
     groups: [(label, [cut, ...])], told apart by their markers.
     """
     cuts = [cut for _, all_cuts in groups for cut in all_cuts]
-    deepest = max(cut["depth_mm"] for cut in cuts)
+    place, axis = along
+    deepest = max(cut[place] for cut in cuts)
     length, unit = (1e3, "µm") if deepest < 0.5 else (1, "mm")
-    against = [("depth of cut, " + unit, lambda cut: cut["depth_mm"] * length)]
+    against = [(f"{axis}, {unit}", lambda cut: cut[place] * length)]
     if len({round(cut.get("rake_deg") or 0, 3) for cut in cuts}) > 1:
         against.append(("rake angle, degrees", lambda cut: cut.get("rake_deg")))
     rows, several = len(against), len(groups) > 1
@@ -215,14 +219,14 @@ def residuals(groups, observables):
              if isinstance(cut.get(key), dict) and finite(cut[key].get("weighted_residual"))]
     reach = max(3, 1.2 * max(map(abs, found)))
     handles = {}
-    for line, (row, (axis, place)) in enumerate(zip(axes, against)):
+    for line, (row, (name, position)) in enumerate(zip(axes, against)):
         for ax, key in zip(row, observables):
             light_grid(ax)
             ax.axhspan(-2, 2, color=ACCENT_PALE, linewidth=0, zorder=0)
             for at in (-2, 0, 2):
                 ax.axhline(at, color=QUIET, linewidth=0.8, linestyle="-" if at == 0 else (0, (4, 3)))
             for k, (label, mine) in enumerate(groups):
-                pairs = [(place(cut), cut[key]["weighted_residual"]) for cut in mine
+                pairs = [(position(cut), cut[key]["weighted_residual"]) for cut in mine
                          if isinstance(cut.get(key), dict) and finite(cut[key].get("weighted_residual"))]
                 if not pairs:
                     continue
@@ -232,8 +236,8 @@ def residuals(groups, observables):
                 handles[label] = ax.plot(x, r, MARKERS[k % len(MARKERS)], color=colour, markersize=6.5)[0]
             ax.set_ylim(-reach, reach)
             ax.margins(x=0.08)
-            ax.set_xlabel(axis)
-            if axis.startswith("rake"):
+            ax.set_xlabel(name)
+            if name.startswith("rake"):
                 ax.set_xticks(sorted({cut["rake_deg"] for cut in cuts})[:12])
                 ax.xaxis.set_major_formatter("{x:g}")
             else:
