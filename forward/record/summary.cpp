@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
+#include <span>
 
 #include "forward/record/statistics.hpp"
 
@@ -26,6 +29,13 @@ std::size_t earliest(const Scene& scene) {
 struct SteadyPart {
   std::size_t from;
   bool steady;
+  std::optional<Swing> swing = {};  ///< of the force about its steady value
+
+  Estimate mean(std::span<const double> of) const { return level(of.subspan(from), swing); }
+  bool knows(std::span<const double> force, double tolerance) const {
+    const Estimate of_force = mean(force);
+    return steady && of_force.standard_error < tolerance * std::abs(of_force.value);
+  }
 };
 
 /// Two depths at least, whose halves agree to 1 %, or, where friction makes the force wander, to twice the scatter of
@@ -38,10 +48,9 @@ bool is_steady(std::span<const double> force, const Scene& scene) {
   return std::abs(first.value - second.value) < std::clamp(scatter, 0.01 * mean, 0.03 * mean);
 }
 
-SteadyPart steady_part(const std::vector<double>& force, const Scene& scene) {
-  const std::span<const double> whole(force);
-  const std::size_t truncated = truncation_point(force, earliest(scene));
-  if (truncated == force.size()) return {truncated, false};
+SteadyPart plain_steady_part(std::span<const double> whole, const Scene& scene) {
+  const std::size_t truncated = truncation_point(whole, earliest(scene));
+  if (truncated == whole.size()) return {truncated, false};
   // The truncation point sits deep in a quiet record: whatever before it has the same mean counts as well.
   const double settled = batch_mean(whole.subspan(truncated)).value;
   std::size_t from = truncated;
@@ -49,10 +58,31 @@ SteadyPart steady_part(const std::vector<double>& force, const Scene& scene) {
          std::abs(batch_mean(whole.subspan(from - 1)).value - settled) < 0.002 * std::abs(settled))
     --from;
   // A slow run-in, as friction makes it, may take up to half of the record.
-  const std::size_t middle = std::max(truncated, force.size() / 2);
+  const std::size_t middle = std::max(truncated, whole.size() / 2);
   for (const std::size_t start : {from, truncated, middle})
     if (is_steady(whole.subspan(start), scene)) return {start, true};
   return {from, false};
+}
+
+/// The chip remembers the curvature that its root was given, and comes down on the rake face with it a crack lead
+/// later: long chips of stiff materials swing for many depths. Where that hides the mean, the swing is taken out, from
+/// the start that tells the mean best.
+SteadyPart steady_part(std::span<const double> force, const Scene& scene) {
+  SteadyPart best = plain_steady_part(force, scene);
+  if (best.from >= force.size() || best.knows(force, scene.steady_state.tolerance)) return best;
+  const std::size_t first = earliest(scene);
+  double least = best.steady ? best.mean(force).standard_error : std::numeric_limits<double>::infinity();
+  for (std::size_t eighths = 0; eighths < 5; ++eighths) {
+    const std::size_t from = first + (force.size() - first) * eighths / 8;
+    const std::optional<Swing> swing = find_swing(force.subspan(from));
+    if (!swing || !is_steady(calmed(force.subspan(from), *swing), scene)) continue;
+    const SteadyPart part{from, true, swing};
+    const double error = part.mean(force).standard_error;
+    if (error >= least) continue;
+    least = error;
+    best = part;
+  }
+  return best;
 }
 
 /// Length of the process zone at this instant.
@@ -108,10 +138,7 @@ Snapshot picture(const State& state) {
 bool well_enough_known(const std::vector<ForceSample>& history, const Scene& scene) {
   if (history.back().travel < scene.steady_state.not_before * scene.cut.depth) return false;
   const std::vector<double> force = series(history, &ForceSample::F_c);
-  const SteadyPart part = steady_part(force, scene);
-  if (!part.steady) return false;
-  const Estimate mean = batch_mean(std::span(force).subspan(part.from));
-  return mean.standard_error < scene.steady_state.tolerance * std::abs(mean.value);
+  return steady_part(force, scene).knows(force, scene.steady_state.tolerance);
 }
 
 void summarise(CutResult& result, const Recorder& recorder, const State& state, const Scene& scene) {
@@ -133,7 +160,7 @@ void summarise(CutResult& result, const Recorder& recorder, const State& state, 
   result.steady_from = history[from].travel;
   const auto mean = [&](auto member) {
     const std::vector<double> values = series(history, member);
-    return batch_mean(std::span(values).subspan(from));
+    return level(std::span(values).subspan(from), part.swing);
   };
   result.F_c = mean(&ForceSample::F_c);
   result.F_t = mean(&ForceSample::F_t);
@@ -142,7 +169,7 @@ void summarise(CutResult& result, const Recorder& recorder, const State& state, 
       std::vector<double> values;
       values.reserve(history.size());
       for (const ForceSample& sample : history) values.push_back(sample.face[static_cast<std::size_t>(face)].*member);
-      return batch_mean(std::span(values).subspan(from));
+      return level(std::span(values).subspan(from), part.swing);
     };
     result.faces.push_back(
         {face, of_face(&FaceForce::normal), of_face(&FaceForce::tangential), of_face(&FaceForce::contact_length)});
