@@ -262,28 +262,27 @@ Extent extent_of(const Scene& scene) {
   return {along(window.ahead), along(window.behind), up(window.below), up(window.above)};
 }
 
-/// The stable time step: an elastic wave's transit of a cell, along and across, in the directions that the grain has
-/// now.
+/// The stable time step in the directions that the grain has now.
 double stable_step(const State& state, const Scene& scene) {
+  double step = stable_step(scene, 1.0, 0.0);
   const Particles& p = state.particles;
-  const Grid& grid = state.grid;
-  const double per_second = std::visit(
-      [&](const auto& law) {
-        const auto transits = [&](double cos, double sin) {
-          return std::max((law.wave_speed(cos, sin) + scene.cut.speed) * grid.inverse_cell_x,
-                          (law.wave_speed(-sin, cos) + scene.cut.speed) * grid.inverse_cell_y);
-        };
-        double most = transits(1.0, 0.0);
-        if constexpr (std::decay_t<decltype(law)>::has_axes)
-          for (std::size_t i = p.begin[scene.log ? below : above]; i < p.begin[above + 1]; ++i)
-            most = std::max(most, transits(p.axis_x[i], -p.axis_y[i]));
-        return most;
-      },
-      scene.material);
-  return scene.resolution.courant_number / per_second;
+  if (p.has_axes)
+    for (std::size_t i = p.begin[scene.log ? below : above]; i < p.begin[above + 1]; ++i)
+      step = std::min(step, stable_step(scene, p.axis_x[i], p.axis_y[i]));
+  return step;
 }
 
 }  // namespace
+
+double stable_step(const Scene& scene, double grain_x, double grain_y) {
+  return std::visit(
+      [&](const auto& law) {
+        const double along = (law.wave_speed(grain_x, -grain_y) + scene.cut.speed) / scene.cell_length(),
+                     across = (law.wave_speed(grain_y, grain_x) + scene.cut.speed) / scene.cell();
+        return scene.resolution.courant_number / std::max(along, across);
+      },
+      scene.material);
+}
 
 State lay_out(const Scene& scene) {
   State state;

@@ -1,6 +1,8 @@
 #include "inverse/commands/expected_cost.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "forward/mpm/window.hpp"
 #include "forward/record/stage_clock.hpp"
@@ -27,12 +29,22 @@ double mean_of_filling(double longest, double full) {
   return longest < full ? 0.5 * longest : full - 0.5 * full * full / longest;
 }
 
+/// The time step once the chip's grain has turned by up to this angle.
+double step_when_turned(const Scene& scene, const State& state, double angle) {
+  constexpr int parts = 90;
+  double step = state.step;
+  if (state.particles.has_axes && !scene.grips)
+    for (int k = 1; k <= parts; ++k)
+      step = std::min(step, forward::stable_step(scene, std::cos(angle * k / parts), std::sin(angle * k / parts)));
+  return step;
+}
+
 }  // namespace
 
 ExpectedCost expected_cost(const Scene& scene, const State& state) {
   // The ramp costs half its time.
-  const auto steps_to = [&](double depths) {
-    return (depths * scene.cut.depth / scene.cut.speed + 0.5 * scene.cut.ramp) / state.step;
+  const auto steps_to = [&](double depths, double step) {
+    return (depths * scene.cut.depth / scene.cut.speed + 0.5 * scene.cut.ramp) / step;
   };
   // Behind the tool the window fills with the base, and above it with the chip, taken to be as thick as the layer.
   const auto window = scene.window;
@@ -44,11 +56,18 @@ ExpectedCost expected_cost(const Scene& scene, const State& state) {
     return static_cast<double>(state.particles.begin[2]) * (1.0 + more / laid);
   };
   const double least = std::min(scene.steady_state.not_before, scene.cut.travel), most = scene.cut.travel;
+  // The chip lies along the rake face, at the latest when it has grown to the window's top; at most, it curls until its
+  // grain stands upright.
+  constexpr double right = 0.5 * std::numbers::pi;
+  const double flat = std::min(least, window.above);
+  const double turned = step_when_turned(scene, state, right - scene.tool.rake);
+  const double least_steps = steps_to(flat, state.step) + steps_to(least, turned) - steps_to(flat, turned);
+  const double most_steps = steps_to(most, step_when_turned(scene, state, right));
   return {.particles = particles_until(most),
-          .least_steps = steps_to(least),
-          .most_steps = steps_to(most),
-          .least = steps_to(least) * particles_until(least),
-          .most = steps_to(most) * particles_until(most)};
+          .least_steps = least_steps,
+          .most_steps = most_steps,
+          .least = least_steps * particles_until(least),
+          .most = most_steps * particles_until(most)};
 }
 
 ExpectedCost expected_cost(const Scene& scene) {
