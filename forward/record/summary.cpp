@@ -66,17 +66,18 @@ SteadyPart plain_steady_part(std::span<const double> whole, const Scene& scene) 
 
 /// The chip remembers the curvature that its root was given, and comes down on the rake face with it a crack lead
 /// later: long chips of stiff materials swing for many depths. Where that hides the mean, the swing is taken out, from
-/// the start that tells the mean best.
+/// the latest start that tells the mean to the tolerance: in the first swings the chip's end finds the rake face.
 SteadyPart steady_part(std::span<const double> force, const Scene& scene) {
   SteadyPart best = plain_steady_part(force, scene);
   if (best.from >= force.size() || best.knows(force, scene.steady_state.tolerance)) return best;
   const std::size_t first = earliest(scene);
   double least = best.steady ? best.mean(force).standard_error : std::numeric_limits<double>::infinity();
-  for (std::size_t eighths = 0; eighths < 5; ++eighths) {
+  for (std::size_t eighths = 4; eighths > 0; --eighths) {
     const std::size_t from = first + (force.size() - first) * eighths / 8;
     const std::optional<Swing> swing = find_swing(force.subspan(from));
     if (!swing || !is_steady(calmed(force.subspan(from), *swing), scene)) continue;
     const SteadyPart part{from, true, swing};
+    if (part.knows(force, scene.steady_state.tolerance)) return part;
     const double error = part.mean(force).standard_error;
     if (error >= least) continue;
     least = error;
