@@ -105,6 +105,7 @@ std::vector<Block> declare() {
        .meaning = "FLIP velocities blended towards PIC; damps where velocity gradients are high",
        .parameters = {number("rate", "1", 0.0, 1.0, "damping per transit of a wave through a cell")}},
   };
+  blocks.push_back(numerics_block());
   const std::vector<Parameter> place{
       number("left", "mm", 0, 1e5, "left edge of the rectangle").or_else("0 mm"),
       number("bottom", "mm", 0, 1e5, "lower edge").or_else("0 mm"),
@@ -249,6 +250,22 @@ void refuse_shared_places(const Scene& scene) {
                                        *a.where, *b.where, part.at.x, part.at.y));
 }
 
+void refuse_what_numerics_exclude(const Scene& scene, const Contents& contents) {
+  if (!contents.has("numerics")) return;
+  const Values& values = contents.at("numerics");
+  const auto refuse = [&](const char* key, const char* why) {
+    throw InputError(fmt::format("{}: [numerics] {}", values.where(key), why));
+  };
+  if (scene.pic_damping && !std::holds_alternative<Flip>(scene.numerics.transfer))
+    refuse("transfer", "leaves [pic_damping] nothing to do: it blends FLIP with PIC (allowed: FLIP)");
+  if (scene.interface && scene.numerics.shape.index() != 0)
+    refuse("shape", "of a scene with an [interface] is \"spline\"");
+  if (scene.numerics.frame == Frame::reference || contents.has("contact")) return;
+  if (scene.interface || scene.conduction) refuse("frame", "= \"current\" excludes [interface] and [conduction]");
+  for (const Stroke& stroke : scene.strokes)
+    if (stroke.speed != 0.0 || stroke.until_stretch) refuse("frame", "= \"current\" holds the piston still");
+}
+
 Contact read_contact(const Values& values, const Scene& scene) {
   const std::string &normal = values.text("normal"), &overlap = values.text("overlap");
   Contact contact{.friction = values.number("friction"),
@@ -346,6 +363,7 @@ Scene read_scene(const Document& document) {
               .cell = box.number("cell"),
               .particles_per_cell_side = static_cast<int>(box.number("particles_per_cell_side")),
               .courant_number = box.number("courant_number"),
+              .numerics = {},
               .walls = {},
               .bodies = {},
               .strokes = {},
@@ -411,10 +429,13 @@ Scene read_scene(const Document& document) {
   if (contents.has("pic_damping")) scene.pic_damping = {.rate = contents.at("pic_damping").number("rate")};
   if (contents.has("gravity"))
     scene.gravity = {.x = contents.at("gravity").number("x"), .y = contents.at("gravity").number("y")};
+  scene.numerics = read_numerics(contents.has("numerics") ? &contents.at("numerics") : nullptr,
+                                 scene.particles_per_cell_side, contents.has("contact"));
+  refuse_what_numerics_exclude(scene, contents);
   if (contents.has("contact")) scene.contact = read_contact(contents.at("contact"), scene);
   if (!scene.contact && !scene.rigids.empty())
     throw InputError(fmt::format("{}: a [[rigid]] body is felt only through a [contact]", scene.rigids[0].where));
-  if (!scene.contact && scene.walls[right] == Wall::open)
+  if (scene.numerics.frame == Frame::reference && scene.walls[right] == Wall::open)
     throw InputError(
         fmt::format("{}: right = \"open\", but without a [contact] the right wall is the piston (allowed: roller)",
                     box.where("right")));

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "forward/bodies/numerics.hpp"
 #include "forward/bodies/shape.hpp"
 #include "forward/scene/scene.hpp"
 #include "models/base/document.hpp"
@@ -87,6 +88,7 @@ struct Scene {
   double length, height, cell;  ///< of the box, mm
   int particles_per_cell_side;
   double courant_number;
+  Numerics numerics;
   std::array<Wall, 4> walls;
   std::vector<BodyPlan> bodies;
   std::vector<Stroke> strokes;
@@ -94,8 +96,8 @@ struct Scene {
   std::optional<Conduction> conduction;
   std::optional<PicDamping> pic_damping;
   std::vector<RigidPlan> rigids;
-  std::optional<Place> gravity;    ///< mm/s^2
-  std::optional<Contact> contact;  ///< then the grid lies in the current configuration
+  std::optional<Place> gravity;  ///< mm/s^2
+  std::optional<Contact> contact;
   std::vector<Measure> measures;
   bool is_thermal() const;
 };

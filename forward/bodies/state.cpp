@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "forward/bodies/step.hpp"
+#include "forward/mpm/stencil.hpp"
 
 namespace kerf::forward::bodies {
 namespace {
@@ -24,6 +25,29 @@ void add_point(Points& p, double x, double y, double volume, const std::vector<l
   for (auto* values : {&p.velocity_x, &p.velocity_y, &p.stress_xx, &p.stress_yy, &p.stress_zz, &p.stress_xy})
     values->push_back(0.0);
   for (std::size_t k = 0; k < memory.size(); ++k) p.memory[k].push_back(memory[k].at_rest);
+}
+
+/// Velocities of APIC's points begin with the gradient of the start velocity.
+void make_affine(const BodyPlan& plan, const Grid& grid, const ShapeFunction& shape, Frame frame, Points& p) {
+  Points::Affine& C = p.affine;
+  for (auto* values : {&C.xx, &C.xy, &C.yx, &C.yy, &C.spread_x, &C.spread_y}) values->assign(p.size(), 0.0);
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const double k = plan.wavelength > 0.0 ? 2.0 * std::numbers::pi / plan.wavelength : 0.0;
+    const double rise = k * std::cos(k * (p.x[i] - plan.shape.left));
+    C.xx[i] = rise * plan.velocity_x;
+    C.yx[i] = rise * plan.velocity_y + plan.spin;
+    C.xy[i] = -plan.spin;
+  }
+  std::visit(
+      [&](const auto& of) {
+        for (std::size_t i = 0; i < p.size(); i += lane_count) {
+          StencilOf stencil(grid, load(&p.kernel_x(frame)[i]), load(&p.kernel_y(frame)[i]), of);
+          const auto [along, up] = stencil.take_moments();
+          store(&C.spread_x[i], grid.cell_x * grid.cell_x * along);
+          store(&C.spread_y[i], grid.cell_y * grid.cell_y * up);
+        }
+      },
+      shape);
 }
 
 Place start_velocity(const BodyPlan& plan, double x, double y) {
@@ -70,8 +94,13 @@ RigidBody make_rigid(const RigidPlan& plan, double gap_x, double gap_y) {
 }  // namespace
 
 State lay_out(const Scene& scene) {
-  State state{
-      .grid = {}, .bodies = {}, .piston = {.position = scene.length}, .bath = {}, .contact = {}, .breakdown = {}};
+  State state{.grid = {},
+              .frame = frame_of(scene),
+              .bodies = {},
+              .piston = {.position = scene.length},
+              .bath = {},
+              .contact = {},
+              .breakdown = {}};
   Grid& grid = state.grid;
   const int along = cells_along(scene.length, scene.cell), up = cells_along(scene.height, scene.cell);
   grid.cell_x = scene.length / along;
@@ -88,6 +117,8 @@ State lay_out(const Scene& scene) {
   const int side = scene.particles_per_cell_side;
   for (const BodyPlan& plan : scene.bodies) {
     state.bodies.push_back(make_body(plan, grid.cell_x / side, grid.cell_y / side));
+    if (std::holds_alternative<Apic>(scene.numerics.transfer))
+      make_affine(plan, grid, scene.numerics.shape, state.frame, state.bodies.back().points);
     VelocityField& field = state.bodies.back().field;
     field.mass.assign(grid.nodes() + lane_count, 0.0);
     for (auto* values : {&field.momentum, &field.velocity, &field.change, &field.force})

@@ -8,12 +8,8 @@
 
 namespace kerf::forward::bodies {
 
-/// Where the grid lies, and kernels are taken. In the reference configuration (total Lagrangian) unless bodies move
-/// past each other: in the current one quadratic splines are unstable under a tension of a quarter of the modulus,
-/// which rubber exceeds.
-enum class Frame { reference, current };
 inline Frame frame_of(const Scene& scene) {
-  return scene.contact ? Frame::current : Frame::reference;
+  return scene.numerics.frame;
 }
 
 /// Material points of one body, structure of arrays, padded to whole batches with points of no volume. Units as in a
@@ -24,6 +20,11 @@ struct Points {
   std::vector<double> stress_xx, stress_yy, stress_zz, stress_xy;  ///< Kirchhoff stress
   std::vector<std::vector<double>> memory;                         ///< what the law keeps, see laws::Memory
   std::vector<double> temperature;                                 ///< K; only of thermal laws
+  /// Of APIC alone: velocity gradient in the grid's configuration, 1/s, and the D of bodies/transfer.hpp, mm^2.
+  struct Affine {
+    std::vector<double> xx, xy, yx, yy, spread_x, spread_y;
+    static constexpr std::size_t numbers = 6;
+  } affine;
   std::size_t size() const { return x.size(); }
   /// Where kernels are taken.
   const std::vector<double>& kernel_x(Frame frame) const { return frame == Frame::current ? x : reference_x; }
@@ -88,6 +89,7 @@ struct ContactState {
 
 struct State {
   Grid grid;  ///< its own velocity fields are not used
+  Frame frame = Frame::reference;
   std::vector<Body> bodies;
   Piston piston;
   HeatBook bath;

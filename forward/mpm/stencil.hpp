@@ -3,13 +3,15 @@
 #include <array>
 #include <cstddef>
 
-#include "forward/mpm/bspline.hpp"
+#include "forward/mpm/shape_function.hpp"
 #include "forward/mpm/state.hpp"
 
 namespace kerf::forward {
 
+// Which of these a compiler takes inline must not depend on how much else a file holds.
+
 /// From eight rows of six numbers (and two that do not count) to six columns of eight.
-inline std::array<Lanes, 6> columns_of(const std::array<Lanes, 8>& row) {
+[[gnu::always_inline]] inline std::array<Lanes, 6> columns_of(const std::array<Lanes, 8>& row) {
   std::array<Lanes, 6> column;
   Lanes even[4], odd[4];  // of two rows each: {a0 b0 a2 b2 a4 b4 - -}, {a1 b1 a3 b3 a5 b5 - -}
   for (int k = 0; k < 4; ++k) {
@@ -31,7 +33,7 @@ inline std::array<Lanes, 6> columns_of(const std::array<Lanes, 8>& row) {
 }
 
 /// And back; the last two numbers of each row are zero.
-inline std::array<Lanes, 8> rows_of(const std::array<Lanes, 6>& column) {
+[[gnu::always_inline]] inline std::array<Lanes, 8> rows_of(const std::array<Lanes, 6>& column) {
   std::array<Lanes, 8> row;
   Lanes low[3], high[3];  // of a pair of columns: rows 0 2 4 6, rows 1 3 5 7
   for (int k = 0; k < 3; ++k) {
@@ -52,10 +54,12 @@ inline std::array<Lanes, 8> rows_of(const std::array<Lanes, 6>& column) {
   return row;
 }
 
-/// The three by three nodes around each of eight particles, with the quadratic B-splines of bspline.hpp. Sums over the
-/// nodes run along rows of the grid: of a row, three nodes with two components each are one load or one store. Along x
-/// the weights belong to lanes (one particle each), along y they multiply whole rows.
-struct Stencil {
+/// The three by three nodes around each of eight particles, with a shape function. Sums over the nodes run along rows
+/// of the grid: of a row, three nodes with two components each are one load or one store. Along x the weights belong to
+/// lanes (one particle each), along y they multiply whole rows.
+template <class Shape>
+struct StencilOf {
+  [[no_unique_address]] Shape shape;
   std::array<Lanes, 3> weight_x, slope_x;  ///< w_i(x), d w_i / d f
   alignas(64) std::array<std::array<double, lane_count>, 3> weight_y, slope_y;
   alignas(64) std::array<double, lane_count> offset_x;
@@ -63,8 +67,9 @@ struct Stencil {
   std::ptrdiff_t stride;                                    ///< of the grid's rows
   Lanes f_x, f_y;
 
-  Stencil() = default;
-  Stencil(const Grid& grid, Lanes x, Lanes y) : stride(grid.stride) {
+  StencilOf() = default;
+  [[gnu::always_inline]] StencilOf(const Grid& grid, Lanes x, Lanes y, const Shape& with = {})
+      : shape(with), stride(grid.stride) {
     const Lanes column = (x - grid.origin_x) * grid.inverse_cell_x, row = (y - grid.origin_y) * grid.inverse_cell_y;
     const LaneInts i = inside(column, grid.columns), j = inside(row, grid.rows);
     f_x = column - __builtin_convertvector(i, Lanes);
@@ -72,9 +77,9 @@ struct Stencil {
     const auto first = __builtin_convertvector(j * grid.stride + i, LaneMask);
     __builtin_memcpy(node.data(), &first, sizeof first);
     store(offset_x.data(), f_x);
-    weigh(f_x, weight_x, slope_x);
+    shape.weigh(f_x, weight_x, slope_x);
     std::array<Lanes, 3> weight, slope;
-    weigh(f_y, weight, slope);
+    shape.weigh(f_y, weight, slope);
     for (std::size_t k = 0; k < 3; ++k) {
       store(weight_y[k].data(), weight[k]);
       store(slope_y[k].data(), slope[k]);
@@ -86,6 +91,20 @@ struct Stencil {
     // Half a cell to either side, with room for rounding.
     const auto holds = (f_x > 0.49) & (f_x < 1.51) & (f_y > 0.49) & (f_y < 1.51);
     return holds ? so_far : Lanes{} + 1.0;
+  }
+
+  /// Puts first moments, w_i (i - f), in the place of the slopes. Returns sum w_i (i - f)^2 along x and y.
+  std::array<Lanes, 2> take_moments() {
+    std::array<Lanes, 2> spread{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Lanes along = static_cast<double>(k) - f_x, up = static_cast<double>(k) - f_y,
+                  weight = load(weight_y[k].data());
+      slope_x[k] = weight_x[k] * along;
+      store(slope_y[k].data(), weight * up);
+      spread[0] += weight_x[k] * along * along;
+      spread[1] += weight * up * up;
+    }
+    return spread;
   }
 
   /// Sum over the rows of a nodal vector field, weighted along y: the six numbers of a row, for each particle.
@@ -147,13 +166,14 @@ struct Stencil {
       share[2 * i + 1] = part * velocity_y;
     }
     add(momentum, share);
-    constexpr Quad a{1.125, -0.25, 0.125, 0.0}, b{-1.5, 2.0, -0.5, 0.0}, c{0.5, -1.0, 0.5, 0.0};
+    add_mass(masses, mass);
+  }
+  void add_mass(double* masses, Lanes mass) const {
     alignas(64) std::array<double, lane_count> each;
     store(each.data(), mass);
 #pragma GCC unroll 8
     for (std::size_t p = 0; p < lane_count; ++p) {
-      const double f = offset_x[p];
-      const Quad row_masses = each[p] * (a + f * (b + f * c));
+      const Quad row_masses = each[p] * shape.row(offset_x[p]);
       for (int j = 0; j < 3; ++j)
         add_row((masses + j * stride) + node[p], weight_y[static_cast<std::size_t>(j)][p] * row_masses);
     }
@@ -165,15 +185,12 @@ struct Stencil {
     const LaneInts low = first > 0 ? first : 0;
     return low < count - 3 ? low : count - 3;
   }
-  static void weigh(Lanes f, std::array<Lanes, 3>& weight, std::array<Lanes, 3>& slope) {
-    const Lanes g = f - 1.0, low = 0.5 - g, high = 0.5 + g;
-    weight = {0.5 * low * low, 0.75 - g * g, 0.5 * high * high};
-    slope = {-low, -2.0 * g, high};
-  }
   template <class T>
   T* row(T* nodal, std::size_t p, int j) const {
     return (nodal + 2 * j * stride) + 2 * node[p];
   }
 };
+
+using Stencil = StencilOf<QuadraticSpline>;
 
 }  // namespace kerf::forward

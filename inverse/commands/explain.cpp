@@ -246,23 +246,22 @@ void explain_bodies(const Document& document, bool json) {
   Json step = Json::array(), all_bodies = Json::array(), absent = Json::array();
   for (const bodies::Stage& stage : stages) step.push_back({{"stage", stage.name}, {"does", stage.does}});
   for (const bodies::Body& body : state.bodies) {
-    const std::size_t numbers =
-        bodies::Points::mechanical_numbers + body.points.memory.size() + (body.is_thermal() ? 1 : 0);
+    const std::size_t numbers = bodies::Points::mechanical_numbers + body.points.memory.size() +
+                                (body.is_thermal() ? 1 : 0) +
+                                (body.points.affine.xx.empty() ? 0 : bodies::Points::Affine::numbers);
     all_bodies.push_back(
         {{"law", std::visit([](const auto& law) { return std::decay_t<decltype(law)>::name(); }, body.law)},
          {"points", body.points.size()},
          {"bytes_per_point", sizeof(double) * numbers}});
   }
   for (const Block& block : bodies::scene_blocks())
-    if (!block.required && !contents.has(block.path))
+    if (!block.required && !contents.has(block.path) && block.path != "numerics")
       absent.push_back({{"block", block.path}, {"meaning", block.meaning}});
-  const Json whole{{"title", scene.title},
-                   {"step", step},
-                   {"bodies", all_bodies},
-                   {"time_step_s", state.step},
-                   {"not_simulated", absent}};
+  const std::string numerics = bodies::describe(scene.numerics);
+  const Json whole{{"title", scene.title}, {"numerics", numerics},      {"step", step},
+                   {"bodies", all_bodies}, {"time_step_s", state.step}, {"not_simulated", absent}};
   if (json) return fmt::print("{}\n", whole.dump(2));
-  fmt::print("{}\n\nEvery step ({:.3g} s at the start)\n", scene.title, state.step);
+  fmt::print("{}\n\nEvery step ({:.3g} s at the start; {})\n", scene.title, state.step, numerics);
   for (const auto& line : step)
     fmt::print("  {:<12}{}\n", line.at("stage").get<std::string>(), line.at("does").get<std::string>());
   fmt::print("\nBodies\n");

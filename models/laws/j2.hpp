@@ -59,7 +59,7 @@ struct J2 {
 
   /// Eqs. (1)-(3) for eight points. False when a stress is no longer a number or a return does not converge; the points
   /// then hold nothing to go on with.
-  bool update(const StrainIncrement& l, MaterialPoints& tau) const {
+  [[gnu::always_inline]] bool update(const StrainIncrement& l, MaterialPoints& tau) const {
     const double G = shear_modulus(), lambda = lame();
     const auto [c, s] = step_rotation(l.xy, l.yx);
     InPlane now = InPlane::of(tau.xx, tau.yy, tau.xy).seen_from(c, -s);

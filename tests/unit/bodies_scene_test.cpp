@@ -72,6 +72,22 @@ TEST(BodiesScene, BadContactIsSaidWithItsPlace) {
               HasSubstr("holds the piston still"));
 }
 
+TEST(BodiesScene, BadNumericsAreSaidWithTheirPlace) {
+  const auto gas = [](const std::string& keys) {
+    return complaint(shipped_text("carnot_gas") + "\n[numerics]\n" + keys + "\n");
+  };
+  EXPECT_THAT(gas("shape = \"splime\""), HasSubstr("did you mean \"spline\""));
+  EXPECT_THAT(gas("transfer = \"APIK\""), HasSubstr("FLIP"));
+  EXPECT_THAT(gas("xpic_order = 3"), HasSubstr("is for transfer = \"XPIC\""));
+  EXPECT_THAT(gas("transfer = \"APIC\""), HasSubstr("leaves [pic_damping] nothing to do"));
+  EXPECT_THAT(gas("frame = \"current\""), HasSubstr("holds the piston still"));
+  EXPECT_THAT(gas("frame = \"current\"\nstress_update = \"MUSL\""), HasSubstr("allowed: USF, USL"));
+  EXPECT_THAT(complaint(shipped_text("interface_bar") + "\n[numerics]\nshape = \"linear\"\n"),
+              HasSubstr("with an [interface] is \"spline\""));
+  EXPECT_THAT(complaint(shipped_text("incline") + "\n[numerics]\nshape = \"uGIMP\"\n"),
+              HasSubstr("with [contact] is \"spline\""));
+}
+
 std::vector<std::string> stages_of(const std::string& text) {
   const Scene scene = read_scene(Document::parse(text, "bodies.toml"));
   State state = lay_out(scene);
@@ -92,7 +108,16 @@ TEST(BodiesScene, AnAbsentEffectHasNoStageAndNoByte) {
               ElementsAre("project", "meet", "strain", "gravity", "accelerate", "touch", "advance", "push", "piston"));
   EXPECT_THAT(stages_of(shipped_text("friction_heat")),
               ElementsAre("project", "meet", "strain", "gravity", "accelerate", "touch", "warm", "advance", "piston"));
+  const std::string gas = shipped_text("carnot_gas");
+  const std::string undamped = gas.substr(0, gas.find("[pic_damping]"));
+  EXPECT_THAT(stages_of(gas + "\n[numerics]\nstress_update = \"USL\"\n"),
+              ElementsAre("project", "push", "accelerate", "strain", "advance", "piston"));
+  EXPECT_THAT(stages_of(gas + "\n[numerics]\nstress_update = \"USAVG\"\n"),
+              ElementsAre("project", "strain", "accelerate", "advance", "project", "strain", "piston"));
+  EXPECT_THAT(stages_of(undamped + "\n[numerics]\ntransfer = \"XPIC\"\n"),
+              ElementsAre("project", "strain", "accelerate", "filter", "advance", "piston"));
   const State bar = lay_out(read_scene(Document::parse(shipped_text("interface_bar"), "bar.toml")));
+  EXPECT_EQ(bar.bodies[0].points.affine.xx.capacity(), 0u);
   EXPECT_EQ(bar.bodies[0].points.temperature.capacity(), 0u);
   EXPECT_EQ(bar.bodies[0].points.memory.size(), 1u);
   EXPECT_EQ(bar.bodies[0].field.filtered.capacity(), 0u);

@@ -35,11 +35,12 @@ class Trial {
       if (p.volume[i] > 0.0) visit(p, i);
   }
 
-  /// Before points move: a body force per mass at the nodes, of their place and the time.
+  /// A body force per mass at the nodes, of their place and the time.
   template <class Force>
   void push_with(Force force) {
-    const auto at =
-        std::find_if(stages.begin(), stages.end(), [](const Stage& stage) { return stage.name == "advance"; });
+    const auto after =
+        std::find_if(stages.begin(), stages.end(), [](const Stage& stage) { return stage.name == "accelerate"; });
+    const auto at = after + 1;
     stages.insert(at, Stage{"push", "", [force](State& s, const Stroke&) {
                               for (int j = 0; j < s.grid.rows; ++j)
                                 for (int i = 0; i < s.grid.columns; ++i) {
