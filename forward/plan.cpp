@@ -6,6 +6,7 @@
 #include "forward/effects/bridging.hpp"
 #include "forward/effects/face_friction.hpp"
 #include "forward/effects/grips.hpp"
+#include "forward/effects/heat.hpp"
 #include "forward/effects/spindle.hpp"
 #include "forward/effects/thermostat.hpp"
 #include "forward/effects/xpic.hpp"
@@ -46,6 +47,8 @@ std::vector<Stage> plan(const Scene& scene) {
     });
   add("stress", "velocity gradients, stresses of the material (stress first), internal forces",
       [&scene](State& state) { update_stress(state, scene.material); });
+  if (scene.thermal && scene.thermal->conductivity > 0.0)
+    add("conduct", "heat of plastic work flows down the temperature's gradient", HeatConduction(scene));
   if (scene.bridging && scene.bridging->cut)
     add("cut bonds", "the tool's edge takes away the bonds that it has passed",
         [&scene](State& state) { cut_bonds(state, scene); });

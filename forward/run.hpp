@@ -63,7 +63,8 @@ struct Cost {
 /// A picture of the last instant: one entry per particle / per crack-face marker.
 struct Snapshot {
   std::vector<double> x, y, velocity_x, velocity_y, equivalent_stress, pressure, plastic_strain;
-  std::vector<int> side;  ///< +1 above the crack plane (chip), -1 below
+  std::vector<double> temperature;  ///< K; empty without [thermal]
+  std::vector<int> side;            ///< +1 above the crack plane (chip), -1 below
   std::vector<double> upper_face_x, upper_face_y, lower_face_x, lower_face_y;
   double tool_tip_x = 0, tool_tip_y = 0, tip_radius = 0, cell = 0;
 };
@@ -91,8 +92,12 @@ struct CutResult {
   double deepest_penetration = 0;    ///< of a crack face into the tool, in cells
   double lost_length = 0;            ///< mm of crack path that left the window with bonds that still held
   double room_ahead = 0;             ///< mm of window ahead of the foremost bond past its peak
-  double edge_share = 0;             ///< of the normal forces, near the edges where the window cuts the chip
-  double inertia_share = 0;          ///< rho d v^2 / F_c: of the force, what it takes to set the chip in motion
+  struct Heat {
+    double chip, highest;  ///< temperatures: mean of the chip from 1.25 to 2.75 depths above the plane, and largest, K
+  };
+  std::optional<Heat> heat;  ///< of a scene with [thermal], at the last instant
+  double edge_share = 0;     ///< of the normal forces, near the edges where the window cuts the chip
+  double inertia_share = 0;  ///< rho d v^2 / F_c: of the force, what it takes to set the chip in motion
   bool steady = false;
   double steady_from = 0;  ///< tool travel, mm
   bool accepted = false;

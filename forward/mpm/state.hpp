@@ -21,8 +21,9 @@ struct Particles {
   std::vector<double> stress_xx, stress_yy, stress_zz, stress_xy;  ///< Kirchhoff stress
   std::vector<double> plastic_strain, volume;
   std::vector<double> axis_x, axis_y;         ///< direction of the grain; only for materials that have one
+  std::vector<double> conducted;              ///< temperature that conduction has added, K; only with a conductivity
   std::array<std::size_t, 3> begin{0, 0, 0};  ///< side s owns [begin[s], begin[s + 1])
-  bool has_axes = false;
+  bool has_axes = false, conducts = false;
 
   struct Field {
     std::vector<double>* values;
@@ -44,6 +45,7 @@ struct Particles {
       all.push_back({&axis_x, "grain direction x", 1});
       all.push_back({&axis_y, "grain direction y", 0});
     }
+    if (conducts) all.push_back({&conducted, "conducted temperature", 0});
     return all;
   }
   std::size_t size() const { return x.size(); }

@@ -39,12 +39,14 @@ std::vector<double> interlaced(std::initializer_list<const std::vector<double>*>
 }
 
 std::vector<Field> particle_fields(const Snapshot& s) {
-  return {{"position", "mm", 2, interlaced({&s.x, &s.y}, 2)},
-          {"velocity", "mm/s", 3, interlaced({&s.velocity_x, &s.velocity_y}, 3)},
-          {"equivalent_stress", "MPa", 1, s.equivalent_stress},
-          {"pressure", "MPa", 1, s.pressure},
-          {"plastic_strain", "1", 1, s.plastic_strain},
-          {"side", "1", 1, {s.side.begin(), s.side.end()}}};
+  std::vector<Field> fields{{"position", "mm", 2, interlaced({&s.x, &s.y}, 2)},
+                            {"velocity", "mm/s", 3, interlaced({&s.velocity_x, &s.velocity_y}, 3)},
+                            {"equivalent_stress", "MPa", 1, s.equivalent_stress},
+                            {"pressure", "MPa", 1, s.pressure},
+                            {"plastic_strain", "1", 1, s.plastic_strain},
+                            {"side", "1", 1, {s.side.begin(), s.side.end()}}};
+  if (!s.temperature.empty()) fields.push_back({"temperature", "K", 1, s.temperature});
+  return fields;
 }
 
 std::vector<Field> face_fields(const Snapshot& s) {

@@ -112,6 +112,9 @@ Json result_json(const CutResult& result) {
     json["faces"][face_name + "_contact_length"] = in_unit(face.contact_length, "mm");
   }
   if (result.is_specimen) json["r_curve"] = r_curve(result.history);
+  if (result.heat)
+    json["temperature"] = {
+        {"chip", finite_or_null(result.heat->chip)}, {"highest", finite_or_null(result.heat->highest)}, {"unit", "K"}};
   json["ledger"] = energies(result.ledger);
   json["deepest_penetration"] = finite_or_null(result.deepest_penetration);
   json["inertia_share"] = finite_or_null(result.inertia_share);

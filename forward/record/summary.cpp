@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include "forward/effects/heat.hpp"
 #include "forward/record/statistics.hpp"
 
 namespace kerf::forward {
@@ -98,8 +99,10 @@ double process_zone(const Crack& crack, const Cohesive& cohesive) {
   return pairs * crack.spacing;
 }
 
-Snapshot picture(const State& state) {
+Snapshot picture(const State& state, const Scene& scene) {
   Snapshot shot;
+  std::vector<double> temperature;
+  if (scene.thermal) temperature = temperatures(state, scene);
   const Particles& p = state.particles;
   for (const std::size_t side : {below, above})
     for (std::size_t i = p.begin[side]; i < p.begin[side + 1]; ++i) {
@@ -114,6 +117,7 @@ Snapshot picture(const State& state) {
           std::sqrt(1.5 * (sx * sx + sy * sy + sz * sz + 2.0 * p.stress_xy[i] * p.stress_xy[i])));
       shot.pressure.push_back(pressure);
       shot.plastic_strain.push_back(p.plastic_strain[i]);
+      if (scene.thermal) shot.temperature.push_back(temperature[i]);
       shot.side.push_back(side == above ? 1 : -1);
     }
   const Crack& crack = state.crack;
@@ -134,6 +138,24 @@ Snapshot picture(const State& state) {
   return shot;
 }
 
+CutResult::Heat heat_of(const State& state, const Scene& scene) {
+  const Particles& p = state.particles;
+  const std::vector<double> T = temperatures(state, scene);
+  CutResult::Heat heat{.chip = 0.0, .highest = scene.thermal->start};
+  double volume = 0.0;
+  const double low = 1.25 * scene.cut.depth, high = 2.75 * scene.cut.depth,
+               ahead = state.tool.x + 2.5 * scene.cut.depth;
+  for (std::size_t i = 0; i < p.begin[above + 1]; ++i) {
+    if (p.volume[i] == 0.0) continue;
+    heat.highest = std::max(heat.highest, T[i]);
+    if (i < p.begin[above] || p.y[i] < low || p.y[i] > high || p.x[i] > ahead) continue;
+    volume += p.volume[i];
+    heat.chip += p.volume[i] * T[i];
+  }
+  heat.chip = volume > 0.0 ? heat.chip / volume : std::nan("");
+  return heat;
+}
+
 }  // namespace
 
 bool well_enough_known(const std::vector<ForceSample>& history, const Scene& scene) {
@@ -145,7 +167,8 @@ bool well_enough_known(const std::vector<ForceSample>& history, const Scene& sce
 void summarise(CutResult& result, const Recorder& recorder, const State& state, const Scene& scene) {
   const std::vector<ForceSample>& history = recorder.history();
   result.history = history;
-  result.snapshot = picture(state);
+  result.snapshot = picture(state, scene);
+  if (scene.thermal) result.heat = heat_of(state, scene);
   if (history.empty()) return;
   result.ledger = history.back().ledger;
   if (scene.grips) {

@@ -156,6 +156,16 @@ std::vector<Block> declare() {
                              "damping per transit of an elastic wave through a cell when the energy is twice the "
                              "wanted one")
                           .or_else("0.01")}},
+      {.path = "thermal",
+       .variant = "",
+       .meaning = "plastic work heats the material, which does not grow softer by it; absent: no temperature",
+       .parameters =
+           {number("temperature", "K", 1.0, 1e4, "of the work before the cut").or_else("293.15 K"),
+            number("specific_heat", "J/(kg K)", 1.0, 1e5, "specific heat c"),
+            number("taylor_quinney", "1", 0.0, 1.0, "share of the plastic work that becomes heat").or_else("0.9"),
+            number("conductivity", "W/(m K)", 1e-6, 1e9,
+                   "thermal conductivity k; absent: adiabatic, heat stays where it arises")
+                .if_given()}},
       {.path = "window",
        .variant = "",
        .meaning =
@@ -342,6 +352,7 @@ Scene read_scene(const Document& document) {
               .pic_damping = {},
               .xpic_damping = {},
               .thermostat = {},
+              .thermal = {},
               .window = {.ahead = window.number("ahead") + window.number("zone") / cut.depth,
                          .behind = window.number("behind") + window.number("zone") / cut.depth,
                          .below = window.number("below"),
@@ -404,6 +415,11 @@ Scene read_scene(const Document& document) {
     scene.xpic_damping = {.rate = xpic->number("rate"), .order = whole_number(*xpic, "order")};
   if (const Values* thermostat = block("thermostat"))
     scene.thermostat = {.kinetic_share = thermostat->number("kinetic_share"), .gain = thermostat->number("gain")};
+  if (const Values* thermal = block("thermal"))
+    scene.thermal = {.start = thermal->number("temperature"),
+                     .specific_heat = thermal->number("specific_heat"),
+                     .taylor_quinney = thermal->number("taylor_quinney"),
+                     .conductivity = thermal->has("conductivity") ? thermal->number("conductivity") : 0.0};
   if (const Values* log = block("log")) scene.log = read_log(*log, scene);
   return scene;
 }

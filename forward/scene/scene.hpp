@@ -125,6 +125,14 @@ struct Thermostat {
   double kinetic_share, gain;
 };
 
+/// A share beta of the plastic work heats the material, and heat flows where there is a conductivity: effects/heat.
+struct Thermal {
+  double start;           ///< temperature of the work before the cut, K
+  double specific_heat;   ///< c, mm^2/(s^2 K)
+  double taylor_quinney;  ///< beta
+  double conductivity;    ///< k, N/(s K); zero: adiabatic
+};
+
 /// Extent of the simulated material around the tool tip, in depths of cut.
 struct Window {
   double ahead, behind, below, above;
@@ -160,6 +168,7 @@ struct Scene {
   std::optional<PicDamping> pic_damping;
   std::optional<XpicDamping> xpic_damping;
   std::optional<Thermostat> thermostat;
+  std::optional<Thermal> thermal;
   Window window;
   Resolution resolution;
   SteadyState steady_state;

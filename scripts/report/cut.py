@@ -86,13 +86,13 @@ def force_history(cut):
     return svg(fig, "cutting and transverse force against tool travel")
 
 
-def chip_picture(cut):
-    """Particles coloured by plastic strain, the tool's outline and the crack's faces."""
+def chip_picture(cut, field="plastic_strain", label="equivalent plastic strain"):
+    """Particles coloured by a field, the tool's outline and the crack's faces."""
     position = cut.particles["position"]
     if len(position) == 0:
         return None
     x, y = position[:, 0], position[:, 1]
-    strain = cut.particles["plastic_strain"]
+    values = cut.particles[field]
     tool, depth = cut.tool, cut.tool["depth"]
     left, right = tool["tip_x"] - 3.2 * depth, tool["tip_x"] + 4.8 * depth
     inside = (x > left) & (x < right)
@@ -103,12 +103,14 @@ def chip_picture(cut):
     axes.set_xlim(left, right)
     axes.set_ylim(bottom, top)
     points_per_mm = (width - 130) / (right - left)
-    colours = dict(cmap=STRAIN, vmin=0, vmax=_readable_maximum(strain[inside]), rasterized=True)
+    lowest = 0 if field == "plastic_strain" else values.min()
+    highest = lowest + _readable_maximum(values[inside] - lowest)
+    colours = dict(cmap=STRAIN, vmin=lowest, vmax=highest, rasterized=True)
     spacing = tool["particle_spacing"]
     for side in (1, -1):
         chosen = inside & (cut.particles["side"] == side)
-        fill_between_particles(axes, position[chosen], strain[chosen], 3.2 * spacing, colours)
-    dots = axes.scatter(x[inside], y[inside], c=strain[inside], s=(1.15 * spacing * points_per_mm) ** 2, marker="s",
+        fill_between_particles(axes, position[chosen], values[chosen], 3.2 * spacing, colours)
+    dots = axes.scatter(x[inside], y[inside], c=values[inside], s=(1.15 * spacing * points_per_mm) ** 2, marker="s",
                         linewidths=0, **colours)
     for points in cut.faces.values():
         shown = (points[:, 0] > left) & (points[:, 0] < right) & (points[:, 1] < y.max())  # not past the chip's end
@@ -125,8 +127,8 @@ def chip_picture(cut):
     axes.set_ylabel("y, mm")
     bar = fig.colorbar(dots, ax=axes, shrink=0.85, aspect=24, pad=0.015)
     bar.outline.set_visible(False)
-    bar.set_label("equivalent plastic strain")
-    return svg(fig, "the chip at the end of the cut, coloured by plastic strain")
+    bar.set_label(label)
+    return svg(fig, f"the chip at the end of the cut, coloured by {label}")
 
 
 def fill_between_particles(axes, position, strain, reach, colours):

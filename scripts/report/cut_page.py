@@ -61,6 +61,11 @@ def add_chip(section, cut):
                                 "the crack in orange, the tool outlined (its clearance side is only sketched).")
     else:
         section.missing("The file holds no particles.")
+    if picture and "temperature" in cut.particles:
+        heat = cut.result["temperature"]
+        section.figure(drawing.chip_picture(cut, "temperature", "temperature, K"), html(
+            "Temperature: the chip has {} K in the mean, the hottest particle {} K.", number(heat["chip"], digits=4),
+            number(heat["highest"], digits=4)))
 
 
 def add_ledger(section, cut):

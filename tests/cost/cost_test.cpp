@@ -110,6 +110,15 @@ TEST(Cost, AnAbsentEffectHoldsNoByte) {
   EXPECT_GT(loaded.top, 0u);
   EXPECT_GT(loaded.slip, 0u);
 
+  // Without conduction a temperature follows from the plastic strain.
+  Scene hot = shipped("heat_45", {{"resolution.cells_through_chip", 4}});
+  EXPECT_EQ(bytes_of(hot).per_particle, plain.per_particle);
+  const Scene cold = shipped("verification_45");
+  EXPECT_EQ(plan(hot).size(), plan(cold).size());
+  hot.thermal->conductivity = 1;
+  EXPECT_EQ(bytes_of(hot).per_particle, plain.per_particle + sizeof(double));
+  EXPECT_EQ(plan(hot).size(), plan(cold).size() + 1);
+
   EXPECT_EQ(bytes_of(shipped("hyperelastic_45")).per_particle, plain.per_particle);
   const Bytes hill = bytes_of(shipped("wood_rl"));
   EXPECT_EQ(hill.per_particle, plain.per_particle + 2 * sizeof(double));

@@ -1,0 +1,94 @@
+// Heat of plastic work in a cut: what the ledger books is what the particles hold, whether it flows or not.
+#include "forward/effects/heat.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "forward/mpm/window.hpp"
+#include "forward/plan.hpp"
+#include "forward/record/recorder.hpp"
+#include "tests/shipped_scene.hpp"
+
+namespace kerf::forward {
+namespace {
+
+using testing::shipped;
+
+double capacity(const Scene& scene) {
+  return laws::density(scene.material) * scene.thermal->specific_heat;
+}
+
+TEST(Heat, MeanTemperatureTimesHeatCapacityIsTheShareOfThePlasticWork) {
+  for (const double conductivity : {0.0, 1e4}) {  // with the second heat creeps by two depths within this cut
+    Scene scene = shipped("heat_45", {{"resolution.cells_through_chip", 4}, {"cut.ramp", 0}});
+    scene.thermal->conductivity = conductivity;
+    State state = lay_out(scene);
+    const std::vector<Stage> stages = plan(scene);
+    double next = scene.cell_length();
+    while (state.tool.x < 2.5 * scene.cut.depth) {
+      for (const Stage& stage : stages) stage.apply(state);
+      state.time += state.step;
+      if (state.tool.x < next) continue;
+      next += scene.cell_length();
+      shift_window(state, scene);
+    }
+    ASSERT_TRUE(state.breakdown.empty()) << state.breakdown;
+    ASSERT_EQ(state.work.retired_plastic, 0.0);
+    const std::vector<double> T = temperatures(state, scene);
+    double heat = 0, hottest = 0, coldest = 1e9;
+    for (std::size_t i = 0; i < state.particles.begin[2]; ++i) {
+      heat += state.particles.volume[i] * capacity(scene) * (T[i] - scene.thermal->start);
+      hottest = std::max(hottest, T[i]);
+      coldest = std::min(coldest, T[i]);
+    }
+    const double expected = scene.thermal->taylor_quinney * take_stock(state, scene.material).plastic;
+    std::printf("conductivity %g N/(s K): heat %.6f, share of the plastic work %.6f N mm/mm, hottest %.2f K\n",
+                conductivity, heat, expected, hottest);
+    EXPECT_GT(expected, 1.0);
+    EXPECT_NEAR(heat / expected, 1.0, 1e-9);
+    EXPECT_GT(coldest, scene.thermal->start - 0.01);
+    EXPECT_EQ(hottest > 300.0, conductivity == 0.0);
+    EXPECT_EQ(state.particles.conducted.empty(), conductivity == 0.0);
+  }
+}
+
+TEST(Heat, TheChipIsAsWarmAsTheForceSays) {
+  const Scene scene = shipped("heat_45", {{"resolution.cells_through_chip", 4}});
+  const CutResult result = run(scene), cold = run(shipped("verification_45", {{"resolution.cells_through_chip", 4}}));
+  ASSERT_TRUE(result.heat.has_value());
+  EXPECT_FALSE(cold.heat.has_value());
+  EXPECT_TRUE(cold.snapshot.temperature.empty());
+  EXPECT_EQ(result.snapshot.temperature.size(), result.snapshot.x.size());
+  EXPECT_EQ(result.F_c.value, cold.F_c.value);
+  // Of the work that does not part the material a share is plastic, most of it in the chip.
+  const double share = result.ledger.plastic / (result.ledger.tool_work - result.ledger.fracture);
+  const double expected =
+      0.9 * share * (result.F_c.value - result.fracture_energy) / (capacity(scene) * scene.cut.depth);
+  std::printf("chip %.2f K warmer, by the force %.2f K\n", result.heat->chip - 293, expected);
+  EXPECT_NEAR((result.heat->chip - 293) / expected, 1.0, 0.04);
+}
+
+TEST(Heat, ConductionDecaysAsTheCosineOfABarDoes) {
+  Scene scene = shipped("heat_45", {{"resolution.cells_through_chip", 8}});
+  scene.thermal->conductivity = 1.0;
+  State state = lay_out(scene);
+  Particles& p = state.particles;
+  const double length = scene.window.ahead * scene.cut.depth, wave = std::numbers::pi / length;
+  for (std::size_t i = 0; i < p.size(); ++i) p.conducted[i] = std::cos(wave * p.x[i]);
+  HeatConduction conduct(scene);
+  state.step = longest_conduction_step(state.grid, scene);
+  double time = 0;
+  const double diffusivity = scene.thermal->conductivity / capacity(scene);
+  for (; time < 0.5 / (diffusivity * wave * wave); time += state.step) conduct(state);
+  double worst = 0;
+  const double left = std::exp(-diffusivity * wave * wave * time);
+  for (std::size_t i = 0; i < p.begin[2]; ++i)
+    worst = std::max(worst, std::abs(p.conducted[i] - left * std::cos(wave * p.x[i])));
+  std::printf("temperature off by %.1e of the first amplitude\n", worst);
+  EXPECT_LT(worst, 5e-3);
+}
+
+}  // namespace
+}  // namespace kerf::forward
