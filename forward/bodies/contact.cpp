@@ -223,7 +223,7 @@ void exchange_impulses(State& state, const Scene& scene) {
       if (into_a || into_b) contact.warmed += heat;
     }
     contact.impact -= impulse.normal * (at.normal_x * mean_x + at.normal_y * mean_y);
-    contact.pressed.impulse[at.node] += impulse.normal;
+    if (!b.rigid || state.bodies.size() == 1) contact.pressed.impulse[at.node] += impulse.normal;
     if (!b.rigid) continue;
     b.rigid->force_x -= x / state.step;
     b.rigid->force_y -= y / state.step;

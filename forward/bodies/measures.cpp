@@ -230,6 +230,44 @@ void sliding(const BodiesResult& result, const Scene& scene, Json& json) {
   json["acceleration_error"] = std::abs(found - expected) / g;
 }
 
+void wedge(const BodiesResult& result, const Scene& scene, Json& json) {
+  if (scene.rigids.empty() || !scene.rigids[0].shape.slab) return;
+  const RigidPlan& rigid = scene.rigids[0];
+  const double speed = std::hypot(rigid.velocity_x, rigid.velocity_y);
+  const Place way{rigid.velocity_x / speed, rigid.velocity_y / speed};
+  const auto along = [&](const Place& f) { return f.x * way.x + f.y * way.y; };
+  const auto across = [&](const Place& f) { return std::abs(f.y * way.x - f.x * way.y); };
+  // The wedge lies to the left of its face; what slides on it is dragged the way that the wedge goes.
+  const Place face{std::cos(rigid.shape.slab->angle), std::sin(rigid.shape.slab->angle)};
+  const double drag = scene.contact->friction * (along(face) > 0.0 ? 1.0 : -1.0);
+  const Place expected{face.y + drag * face.x, -face.x + drag * face.y};
+  const Span span = span_of(result, scene.strokes.size() - 1);
+  const double middle = 0.5 * (result.history[span.first].time + result.history[span.last].time);
+  double n = 0, t = 0, f = 0, g = 0, tt = 0, tf = 0, ff = 0;
+  for (std::size_t i = span.first + 1; i <= span.last; ++i) {
+    const Reading& r = result.history[i];
+    if (r.time < middle) continue;
+    const Place force{r.rigid_force_x, r.rigid_force_y};
+    const double time = r.time - middle;
+    n += 1.0;
+    t += time;
+    f += along(force);
+    g += across(force);
+    tt += time * time;
+    tf += time * along(force);
+    ff += along(force) * along(force);
+  }
+  const double slope = (n * tf - t * f) / (n * tt - t * t);
+  const double scatter = (ff - f * f / n) / n - slope * slope * (tt - t * t / n) / n;
+  const double closed_form = across(expected) / along(expected);
+  json["force_along"] = f / n;
+  json["force_across"] = g / n;
+  json["force_ratio"] = g / f;
+  json["closed_form_force_ratio"] = closed_form;
+  json["force_ratio_error"] = std::abs(g / f / closed_form - 1.0);
+  json["force_noise"] = std::sqrt(std::max(scatter, 0.0)) / (f / n);
+}
+
 void rubbing(const BodiesResult& result, const Scene& scene, Json& json) {
   if (scene.bodies.size() != 2) return;
   const BodyPlan &a = scene.bodies[0], &b = scene.bodies[1];
@@ -311,6 +349,9 @@ Json measure(const BodiesResult& result, const Scene& scene) {
         break;
       case Measure::sliding:
         sliding(result, scene, json);
+        break;
+      case Measure::wedge:
+        wedge(result, scene, json);
         break;
       case Measure::rubbing:
         rubbing(result, scene, json);

@@ -24,6 +24,9 @@ namespace kerf::forward::bodies {
 /// - rubbing: of two bodies that slide on each other until they have one velocity, friction_heat (N mm/mm) and warming
 ///   (K, mean over both) against m w^2/2 with the velocity w between them at the start and m = m_1 m_2/(m_1 + m_2), of
 ///   which either gets half
+/// - wedge: of a rigid wedge (a slab) that moves into a body, forces along and across its way (N/mm), means over the
+///   second half of the last stroke, and force_ratio, across over along, against Coulomb's cone about the normal of its
+///   face, tan(a - atan mu) with the rake a; force_noise, the scatter of the force along about its trend over its mean
 /// - modulus: effective_modulus along x of what lies in the box, and effective_modulus_error against layers whose
 /// normal
 ///   stands askew by a, with f_i their shares and A/V the interface's area per volume, c = cos a, s = sin a:

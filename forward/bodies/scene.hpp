@@ -79,9 +79,9 @@ struct Contact {
 };
 
 /// What to read off the run: see bodies/measures.
-enum class Measure { cycle, rubber, expansion, modulus, sliding, hertz, rubbing };
-inline constexpr std::array<const char*, 7> measure_names{"cycle",   "rubber", "expansion", "modulus",
-                                                          "sliding", "hertz",  "rubbing"};
+enum class Measure { cycle, rubber, expansion, modulus, sliding, hertz, rubbing, wedge };
+inline constexpr std::array<const char*, 8> measure_names{"cycle",   "rubber", "expansion", "modulus",
+                                                          "sliding", "hertz",  "rubbing",   "wedge"};
 
 struct Scene {
   std::string title;

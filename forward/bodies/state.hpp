@@ -82,7 +82,7 @@ struct ContactState {
   double warmed = 0;                      ///< part of the heat of friction that has warmed bodies
   double impact = 0;                      ///< lost where approaching surfaces take one velocity
   struct Pressed {
-    std::vector<double> impulse;  ///< normal, at every node, N s/mm
+    std::vector<double> impulse;  ///< normal, at every node, N s/mm; between deforming bodies where there are several
     double since = 0;             ///< s
   } pressed;
 };

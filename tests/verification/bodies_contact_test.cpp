@@ -165,6 +165,58 @@ TEST(BodiesContact, ACylinderOnAFlatIsPressedAsHertzSays) {
   }
 }
 
+TEST(BodiesContact, ACylinderOnAnElasticFlatIsPressedAsHertzSays) {
+  const BodiesResult result = result_of(shipped_text("hertz_pair"));
+  ASSERT_TRUE(result.accepted);
+  std::printf("%.1f cells in the half width: it is off by %.4f, the peak pressure by %.4f\n",
+              number(result, "cells_in_half_width"), number(result, "half_width_error"),
+              number(result, "peak_pressure_error"));
+  EXPECT_LT(number(result, "half_width_error"), 0.03);
+  EXPECT_LT(number(result, "peak_pressure_error"), 0.03);
+  // What the plate gives the flat, the flat gives the cylinder, in the mean over the second half.
+  double impulse = 0, duration = 0;
+  for (std::size_t i = 1; i < result.history.size(); ++i) {
+    if (result.history[i].time < 0.5 * result.history.back().time) continue;
+    const double step = result.history[i].time - result.history[i - 1].time;
+    impulse += step * result.history[i].rigid_force_y;
+    duration += step;
+  }
+  EXPECT_NEAR(impulse / duration / (0.5 * number(result, "force")), 1.0, 0.02);
+}
+
+/// The shipped wedge with this rake (deg), a normal of contact and friction.
+std::string wedge(int rake, const std::string& normal, double friction) {
+  std::string text = replaced(shipped_text("wedge"), "\"45 deg\"", fmt::format("\"{} deg\"", 90 - rake));
+  text = replaced(text, "\"-135 deg\"", fmt::format("\"{} deg\"", -90 - rake));
+  const double a = rake * std::numbers::pi / 180;
+  std::string contact = fmt::format("friction = {}\nnormal = \"{}\"\n", friction, normal);
+  if (normal == "SN") contact += fmt::format("normal_x = {}\nnormal_y = {}\n", -std::cos(a), std::sin(a));
+  return replaced(text, "normal = \"SN\"\nnormal_x = -1\nnormal_y = 1\n", contact);
+}
+
+TEST(BodiesContact, AWedgeOfRigidParticlesIsPushedBackAsTheNormalsSay) {
+  // Largest error of F_t/F_c, relative to tan(rake - atan mu). Found: 1e-15 and 6e-4; 0.03 to 0.06; 0.08 to 0.41.
+  struct Case {
+    const char* normal;
+    double least, most;
+  };
+  for (const Case& at : {Case{"SN", 0.0, 2e-3}, Case{"MVG", 0.005, 0.08}, Case{"AVG", 0.05, 0.5}})
+    for (const int rake : {45, 30})
+      for (const double friction : {0.0, 0.3}) {
+        const BodiesResult result = result_of(wedge(rake, at.normal, friction));
+        ASSERT_TRUE(result.accepted) << at.normal;
+        const double error = number(result, "force_ratio_error");
+        std::printf("%s, rake %d deg, mu = %.1f: F_c = %.2f N/mm, F_t/F_c = %.4f (closed form %.4f), noise %.3f\n",
+                    at.normal, rake, friction, number(result, "force_along"), number(result, "force_ratio"),
+                    number(result, "closed_form_force_ratio"), number(result, "force_noise"));
+        EXPECT_LT(error, friction == 0.0 && at.least == 0.0 ? 1e-9 : at.most) << at.normal << rake;
+        EXPECT_GE(error, at.least) << at.normal << rake;
+        EXPECT_LT(number(result, "force_noise"), 0.08);
+        EXPECT_NEAR(number(result, "closed_form_force_ratio"),
+                    std::tan(rake * std::numbers::pi / 180 - std::atan(friction)), 1e-12);
+      }
+}
+
 TEST(BodiesContact, SurfacesThatTouchAreSeenApartByTheKernelsMean) {
   // With many points the kernel's own integral: 2 int_0 x B / int_0 B = 13/16.
   EXPECT_NEAR(distance_at_touch(0.5, 4), 13.0 / 16, 0.01);
