@@ -109,6 +109,9 @@ void print_table(const forward::CutResult& r) {
       "booked per new area, over what broken bonds had used");
   row("chip ratio", number(r.chip_ratio, ""), "chip thickness over depth of cut");
   row("chip curvature", number(r.chip_curvature, "1/mm"), "positive curls away from the tool");
+  if (r.heat)
+    row("temperature", fmt::format("{:.1f} K", r.heat->chip),
+        fmt::format("mean of the chip; hottest point {:.1f} K", r.heat->highest).c_str());
   row("inertia", fmt::format("{:.1f} %", 100 * r.inertia_share), "of F_c, to set the chip in motion (rho d v^2)");
   row("deepest penetration", fmt::format("{:.3f} cells", r.deepest_penetration), "of a crack face into the tool");
   fmt::print("\nenergy per width          J/m   share of the tool's work\n");
