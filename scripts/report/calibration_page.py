@@ -394,7 +394,8 @@ def _intercepts(page, calibration):
                             "root of the depth.")
     reduction = calibration.reduction
     if reduction is None:
-        section.missing("reduction.json is not there: closed forms and intercepts are left out.")
+        section.missing("reduction.json is not there: closed forms and intercepts are left out."
+                        if planed(calibration.result) else "Closed forms and intercepts want a planing curve.")
         return
     methods = reduction.get("methods") or {}
     points, curves = measured_points(calibration.result), method_curves(reduction)

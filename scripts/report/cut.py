@@ -86,6 +86,22 @@ def force_history(cut):
     return svg(fig, "cutting and transverse force against tool travel")
 
 
+def r_curve(cut):
+    """Resistance against crack extension of a specimen, read at the grips and at the notch."""
+    curve = cut.result["r_curve"]
+    fig, axes = figure(700, 300)
+    light_grid(axes)
+    notch = [a + b if finite(a) and finite(b) else np.nan for a, b in zip(curve["notch_I"], curve["notch_II"])]
+    axes.plot(curve["extension"], notch, color=WARM, linewidth=1.6, linestyle=(0, (5, 2)), label="at the notch")
+    axes.plot(curve["extension"], [np.nan if v is None else v for v in curve["G_R"]], color=ACCENT, linewidth=2,
+              label="at the grips")
+    axes.set_xlabel("crack extension, mm")
+    axes.set_ylabel("resistance G_R, J/m²")
+    axes.set_ylim(bottom=0)
+    axes.legend()
+    return svg(fig, "resistance of a specimen against the extension of its crack")
+
+
 def chip_picture(cut, field="plastic_strain", label="equivalent plastic strain"):
     """Particles coloured by a field, the tool's outline and the crack's faces."""
     position = cut.particles["position"]
@@ -94,9 +110,13 @@ def chip_picture(cut, field="plastic_strain", label="equivalent plastic strain")
     x, y = position[:, 0], position[:, 1]
     values = cut.particles[field]
     tool, depth = cut.tool, cut.tool["depth"]
+    specimen = "r_curve" in cut.result
     left, right = tool["tip_x"] - 3.2 * depth, tool["tip_x"] + 4.8 * depth
+    if specimen:
+        left, right = x.min() - 0.3 * depth, x.max() + 0.3 * depth
     inside = (x > left) & (x < right)
-    bottom, top = max(y.min(), tool["tip_y"] - 1.9 * depth), y[inside].max() + 0.35 * depth if inside.any() else y.max()
+    bottom = y.min() - 0.3 * depth if specimen else max(y.min(), tool["tip_y"] - 1.9 * depth)
+    top = y[inside].max() + 0.35 * depth if inside.any() else y.max()
     width = 860
     fig, axes = figure(width, max(260, (width - 120) * (top - bottom) / (right - left) + 60))
     axes.set_aspect("equal")
@@ -118,11 +138,12 @@ def chip_picture(cut, field="plastic_strain", label="equivalent plastic strain")
         gaps = np.linalg.norm(np.diff(points, axis=0), axis=1) > 4 * spacing  # where markers have left the window
         line[1:][gaps] = np.nan
         axes.plot(line[:, 0], line[:, 1], color=WARM, linewidth=1.2)
-    for outline in tool_outlines(tool, left, right, top, bottom):
-        axes.add_patch(Polygon(outline, closed=True, facecolor="#f4f1ea", edgecolor=INK, linewidth=1.2, zorder=0.5))
-    inward = sum(_tool_faces(tool))  # half-way between the rake face and the clearance face
-    axes.text(*(np.array([tool["tip_x"], tool["tip_y"]]) + 1.7 * depth * inward / np.linalg.norm(inward)), "tool",
-              color=QUIET, ha="center", va="center", zorder=0.6, clip_on=True)
+    if not specimen:
+        for outline in tool_outlines(tool, left, right, top, bottom):
+            axes.add_patch(Polygon(outline, closed=True, facecolor="#f4f1ea", edgecolor=INK, linewidth=1.2, zorder=0.5))
+        inward = sum(_tool_faces(tool))  # half-way between the rake face and the clearance face
+        axes.text(*(np.array([tool["tip_x"], tool["tip_y"]]) + 1.7 * depth * inward / np.linalg.norm(inward)), "tool",
+                  color=QUIET, ha="center", va="center", zorder=0.6, clip_on=True)
     axes.set_xlabel("x, mm")
     axes.set_ylabel("y, mm")
     bar = fig.colorbar(dots, ax=axes, shrink=0.85, aspect=24, pad=0.015)

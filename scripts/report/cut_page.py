@@ -10,7 +10,11 @@ FACES = {"rake": "rake face", "bottom": "clearance side", "tip": "round tip", "l
 def page_of_cut(cut):
     """The page of a single file of `kerf simulate -o`."""
     result = cut.result
-    if result["accepted"]:
+    specimen = "r_curve" in result
+    if result["accepted"] and specimen:
+        headline = [html("The specimen's crack grew by {} mm and passed every acceptance test.",
+                         number(result["r_curve"]["extension"][-1]))]
+    elif result["accepted"]:
         headline = [html("The cut ran steadily from {} mm of tool travel on and passed every acceptance test: "
                          "cutting force {}, transverse force {}, crack tip {} by the tool.",
                          number(result["steady_from"]), _estimate(result["F_c"]), _estimate(result["F_t"]),
@@ -21,7 +25,7 @@ def page_of_cut(cut):
 
     section = page.section("What it says")
     section.warnings([prose(reason) for reason in result["refusals"]])
-    section.facts(facts_of(result))
+    section.facts(facts_of_specimen(result) if specimen else facts_of(result))
     faces = result["faces"]
     names = [key.removesuffix("_normal") for key in faces if key.endswith("_normal")]
     if names:
@@ -29,8 +33,12 @@ def page_of_cut(cut):
                       [[FACES.get(name, name.replace("_", " "))] +
                        [_bare(faces[f"{name}_{what}"]) for what in ("normal", "tangential", "contact_length")]
                        for name in names], numeric=(1, 2, 3))
-    add_force_history(page.section("Force along the cut"), cut)
-    add_chip(page.section("The chip"), cut)
+    if specimen:
+        page.section("Resistance").figure(drawing.r_curve(cut), "The energy release rate twice: from pull and rotation at "
+                                          "the grips, and as the area under the laws up to the openings at the notch.")
+    else:
+        add_force_history(page.section("Force along the cut"), cut)
+    add_chip(page.section("The specimen" if specimen else "The chip"), cut)
     add_ledger(page.section("Where the energy went"), cut)
 
     cost = result["cost"]
@@ -55,8 +63,13 @@ def add_force_history(section, cut):
 
 
 def add_chip(section, cut):
-    picture = drawing.chip_picture(cut)
-    if picture:
+    specimen = "r_curve" in cut.result
+    picture = (drawing.chip_picture(cut, "equivalent_stress", "equivalent stress, MPa") if specimen else
+               drawing.chip_picture(cut))
+    if specimen and picture:
+        section.figure(picture, "Particles at the last instant, coloured by equivalent stress; the faces of the crack in "
+                                "orange.")
+    elif picture:
         section.figure(picture, "Particles at the last instant, coloured by equivalent plastic strain; the faces of "
                                 "the crack in orange, the tool outlined (its clearance side is only sketched).")
     else:
@@ -98,6 +111,14 @@ def facts_of(result):
         ("ledger’s residue", f"{number(percent(residue), digits=2)} %", "of the tool’s work, unexplained"),
         ("wall time", f"{number(result['cost']['wall_s'])} s", ""),
     ]
+
+
+def facts_of_specimen(result):
+    kept = ("verdict", "mode I share", "fracture energy", "ledger’s residue", "wall time")
+    facts = [fact for fact in facts_of(result) if fact[0] in kept]
+    curve = result["r_curve"]
+    return [facts[0][:2] + ("",), ("crack extension", f"{number(curve['extension'][-1])} mm", ""),
+            ("largest resistance", f"{number(max(filter(finite, curve['G_R'])))} J/m²", "read at the grips"), *facts[1:]]
 
 
 def _lead(millimetres):
