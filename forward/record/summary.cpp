@@ -228,12 +228,14 @@ void summarise(CutResult& result, const Recorder& recorder, const State& state, 
 
   const double mode_I = history.back().fracture_I - history[from].fracture_I;
   const double fracture = history.back().ledger.fracture - history[from].ledger.fracture;
-  const double travel = history.back().travel - history[from].travel;
+  // New area lies behind the softened front, whose distance to the tool may swing.
+  const auto front = [](const ForceSample& sample) { return sample.travel + sample.softening_lead; };
+  const double advance = front(history.back()) - front(history[from]);
   const double broken_length = history.back().broken_length - history[from].broken_length;
   const double broken_energy = history.back().broken_energy - history[from].broken_energy;
   result.mode_I_fraction = mode_I / fracture;
-  result.fracture_energy = fracture / travel;
-  result.fracture_energy_ratio = broken_length > 0.0 ? (fracture / travel) / (broken_energy / broken_length) : 0.0;
+  result.fracture_energy = fracture / advance;
+  result.fracture_energy_ratio = broken_length > 0.0 ? (fracture / advance) / (broken_energy / broken_length) : 0.0;
 }
 
 const char* name(Branch branch) {
