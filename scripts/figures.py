@@ -356,6 +356,32 @@ def bodies(results):
     return fig
 
 
+def layers(results):
+    """A laminate at every angle, and Carnot's cycle of a metal that yields beside one that does not."""
+    fig, axes = figure(980, 360, 1, 2)
+    found = [experiment(results, file.stem)[0] for file in results.glob("laminate_*.json")]
+    for D, colour in zip(sorted({one["interface_stiffness"] for one in found}), [WARM, ACCENT, INK]):
+        mine = [one for one in found if one["interface_stiffness"] == D]
+        angles = [one["interface_angle"] for one in mine]
+        axes[0].plot(angles, [one["effective_modulus"] for one in mine], "o", color=colour,
+                     label=f"D = {D:.0e} MPa/mm")
+        axes[0].plot(angles, [one["closed_form_modulus"] for one in mine], "_", color=colour, markersize=22,
+                     markeredgewidth=1.5)
+    axes[0].set(title="laminate pulled askew (dashes: closed form)", xlabel="angle from the layers' normal to the pull, deg",
+                ylabel="effective modulus, MPa", xticks=range(0, 91, 15))
+    axes[0].set_ylim(0, None)
+    axes[0].legend(frameon=False)
+    for name, colour, label in (("carnot_tungsten", ACCENT, "elastic"), ("carnot_tungsten_plastic", WARM, "yields")):
+        _, metal = experiment(results, name)
+        axes[1].plot((metal["length"] / metal["length"][0] - 1) * 100, metal["stress_xx"], color=colour, linewidth=2,
+                     label=label)
+    axes[1].set(title="tungsten, Carnot cycle", xlabel="stretch, %", ylabel="stress along the piston's way, MPa")
+    axes[1].legend(frameon=False)
+    for panel in axes:
+        light_grid(panel)
+    return fig
+
+
 def contact(results):
     """A block on an incline and a cylinder on a flat."""
     fig, axes = figure(980, 330, 1, 2)
@@ -385,7 +411,7 @@ FIGURES = {"plane_chips": (chips, "plane_mouth"), "talk_forces": (talk, "talk"),
            "bottom_force": (bottom, "talk_edge"), "wood_forces": (wood, "wood_rl"), "plane_forces": (plane, "plane_m12"),
            "laws": (laws, "laws"), "work_precision": (work_precision, "study_polymer"),
            "veneer": (veneer, "veneer.h5"), "contact": (contact, "hertz.json"),
-           "bodies": (bodies, "carnot_gas.json")}
+           "bodies": (bodies, "carnot_gas.json"), "layers": (layers, "laminate_45_30.json")}
 
 
 def main():

@@ -49,12 +49,20 @@ study study_wood wood_rl resolution.cells_through_chip=x0.75,x1.25 cut.speed=x2,
 build/release/kerf simulate "$scenes/veneer.toml" -o results/experiments/veneer.h5
 
 # The same particles as an engine, a rubber band and a glued bar.
-for name in carnot_gas carnot_tungsten rubber_gough incline hertz; do
+for name in carnot_gas carnot_tungsten carnot_tungsten_plastic rubber_gough incline hertz; do
   build/release/kerf simulate "$scenes/$name.toml" -o "results/experiments/$name.json"
 done
 for stiffness in 1 3 10 30 100 1e3 1e5 1e7 1e9; do
   build/release/kerf simulate "$scenes/interface_bar.toml" --set "interface.normal=$stiffness MPa/mm" \
     -o "results/experiments/interface_bar_$stiffness.json"
+done
+for angle in 0 15 30 45 60 90; do
+  for stiffness in 30 1e3 5e8; do
+    scene=results/experiments/laminate_${angle}_$stiffness
+    sed "s/\"60 deg\"/\"$((90 - angle)) deg\"/; s/\"-120 deg\"/\"$((-90 - angle)) deg\"/" "$scenes/laminate.toml" >"$scene.toml"
+    build/release/kerf simulate "$scene.toml" --set "interface.normal=$stiffness MPa/mm" \
+      --set "interface.tangential=$(python3 -c "print($stiffness / 2)") MPa/mm" -o "$scene.json"
+  done
 done
 
 scripts/figures.py results/experiments data/figures
