@@ -262,6 +262,8 @@ void refuse_what_numerics_exclude(const Scene& scene, const Contents& contents) 
     refuse("shape", "of a scene with an [interface] is \"spline\"");
   if (contents.has("contact") && scene.is_thermal() && scene.numerics.shape.index() != 0)
     refuse("shape", "of a scene whose friction warms bodies is \"spline\"");
+  if (scene.interface && scene.numerics.stress_update != StressUpdate::first)
+    refuse("stress_update", "of a scene with an [interface] is \"USF\": its springs pull once in a step");
   if (scene.numerics.frame == Frame::reference || contents.has("contact")) return;
   if (scene.interface || scene.conduction) refuse("frame", "= \"current\" excludes [interface] and [conduction]");
   for (const Stroke& stroke : scene.strokes)
