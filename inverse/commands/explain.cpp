@@ -13,6 +13,7 @@
 #include "forward/mpm/window.hpp"
 #include "forward/plan.hpp"
 #include "forward/record/cut_file.hpp"
+#include "forward/record/stage_clock.hpp"
 #include "forward/scene/preset.hpp"
 #include "inverse/commands/commands.hpp"
 #include "inverse/commands/expected_cost.hpp"
@@ -244,7 +245,19 @@ void explain_bodies(const Document& document, bool json) {
   const std::vector<bodies::Stage> stages = bodies::plan(scene, joint);
   const Contents contents = document.read(bodies::scene_blocks());
   Json step = Json::array(), all_bodies = Json::array(), absent = Json::array();
-  for (const bodies::Stage& stage : stages) step.push_back({{"stage", stage.name}, {"does", stage.does}});
+  const double time_step = state.step;
+  std::size_t points = 0;
+  for (const bodies::Body& body : state.bodies) points += body.points.size();
+  forward::StageClock clock(stages, 1);
+  constexpr int timed = 50;
+  for (int i = 0; i < timed; ++i) clock.step(state, scene.strokes[0]);
+  std::vector<forward::StageTime> times = clock.times();
+  double all_time = 0;
+  for (const forward::StageTime& time : times) all_time += time.seconds;
+  for (std::size_t i = 0; i < stages.size(); ++i)
+    step.push_back(
+        {{"stage", stages[i].name}, {"does", stages[i].does}, {"share", times[i].seconds / std::max(all_time, 1e-9)}});
+  const double rate = timed * static_cast<double>(points) / std::max(all_time, 1e-9);
   for (const bodies::Body& body : state.bodies) {
     const std::size_t numbers = bodies::Points::mechanical_numbers + body.points.memory.size() +
                                 (body.is_thermal() ? 1 : 0) +
@@ -261,9 +274,11 @@ void explain_bodies(const Document& document, bool json) {
   const Json whole{{"title", scene.title}, {"numerics", numerics},      {"step", step},
                    {"bodies", all_bodies}, {"time_step_s", state.step}, {"not_simulated", absent}};
   if (json) return fmt::print("{}\n", whole.dump(2));
-  fmt::print("{}\n\nEvery step ({:.3g} s at the start; {})\n", scene.title, state.step, numerics);
+  fmt::print("{}\n\nEvery step of {:.3g} s at the start, {:.2g} particle-steps per second: {}\n", scene.title,
+             time_step, rate, numerics);
   for (const auto& line : step)
-    fmt::print("  {:<12}{}\n", line.at("stage").get<std::string>(), line.at("does").get<std::string>());
+    fmt::print("  {:<12}{:>5.1f} %   {}\n", line.at("stage").get<std::string>(), 100 * line.at("share").get<double>(),
+               line.at("does").get<std::string>());
   fmt::print("\nBodies\n");
   for (const auto& body : all_bodies)
     fmt::print("  {}: {} points of {} bytes\n", body.at("law").get<std::string>(), body.at("points").get<int>(),
