@@ -12,6 +12,21 @@
 namespace kerf::forward {
 namespace {
 
+/// Of a quantity of the samples from `from` on, by their travel: least squares.
+template <class Quantity>
+double slope(const std::vector<ForceSample>& history, std::size_t from, const Quantity& quantity) {
+  const double n = static_cast<double>(history.size() - from);
+  double x = 0, y = 0, xx = 0, xy = 0;
+  for (std::size_t i = from; i < history.size(); ++i) {
+    const double travel = history[i].travel - history[from].travel, value = quantity(history[i]);
+    x += travel;
+    y += value;
+    xx += travel * travel;
+    xy += travel * value;
+  }
+  return (n * xy - x * y) / (n * xx - x * x);
+}
+
 template <class Samples, class Member>
 std::vector<double> series(const Samples& samples, Member member) {
   std::vector<double> values;
@@ -228,14 +243,16 @@ void summarise(CutResult& result, const Recorder& recorder, const State& state, 
 
   const double mode_I = history.back().fracture_I - history[from].fracture_I;
   const double fracture = history.back().ledger.fracture - history[from].ledger.fracture;
-  // New area lies behind the softened front, whose distance to the tool may swing.
-  const auto front = [](const ForceSample& sample) { return sample.travel + sample.softening_lead; };
-  const double advance = front(history.back()) - front(history[from]);
+  // New area lies behind the softened front, whose distance to the tool may swing, and which goes from cell to cell: a
+  // line through all samples knows its advance to a fraction of a cell, their first and last to one or two.
+  const double energy_per_area =
+      slope(history, from, [](const ForceSample& sample) { return sample.ledger.fracture; }) /
+      slope(history, from, [](const ForceSample& sample) { return sample.travel + sample.softening_lead; });
   const double broken_length = history.back().broken_length - history[from].broken_length;
   const double broken_energy = history.back().broken_energy - history[from].broken_energy;
   result.mode_I_fraction = mode_I / fracture;
-  result.fracture_energy = fracture / advance;
-  result.fracture_energy_ratio = broken_length > 0.0 ? (fracture / advance) / (broken_energy / broken_length) : 0.0;
+  result.fracture_energy = energy_per_area;
+  result.fracture_energy_ratio = broken_length > 0.0 ? energy_per_area / (broken_energy / broken_length) : 0.0;
 }
 
 const char* name(Branch branch) {
