@@ -9,6 +9,7 @@ namespace {
 constexpr double first_radius = 0.5;    // in search coordinates: a factor of 1.65
 constexpr double largest_radius = 1.0;  // log-linear slopes do not reach further
 constexpr int most_iterations = 60;
+constexpr double standard_error_squared = 1;  // the rise of chi^2 at a distance of one standard error of one parameter
 
 /// Minimum of the local model no further than `radius` from its base in any coordinate.
 ModelMinimum propose(const Objective& objective, const LocalModel& model, double radius) {
@@ -105,7 +106,7 @@ class GaussNewton {
       radius_ = 2 * objective_.choice().step;
       return difference();
     }
-    const bool at_noise = promise <= 10 * worthwhile();
+    const bool at_noise = promise <= std::max(10 * worthwhile(), standard_error_squared);
     stop(at_noise, at_noise ? "the steps left promise little and deliver less: the end of what the simulation resolves"
                             : "steps that the slopes promise do not lower the misfit");
   }

@@ -102,6 +102,7 @@ Posterior sample_posterior(const LocalModel& model, const Misfit& misfit, const 
   const std::size_t walkers = static_cast<std::size_t>(std::max<Eigen::Index>(32, 6 * all));
   std::vector<Eigen::VectorXd> at = begin(density, space, known, centre, walkers, random);
   std::vector<double> height;
+  height.reserve(walkers);
   for (const Eigen::VectorXd& walker : at) height.push_back(density.logarithm(walker));
 
   const int before = std::max(1, moves / 5);

@@ -39,7 +39,7 @@ LocalModel seen_slopes(const LocalModel& model, const Misfit& misfit) {
     const double lambda = solver.eigenvalues()[c];
     share[c] = lambda > reached ? std::sqrt(1 - 1 / lambda) : 0;
   }
-  const Eigen::MatrixXd u = solver.eigenvectors();  // u^T D u = 1
+  const Eigen::MatrixXd& u = solver.eigenvectors();  // u^T D u = 1
   return model.scaled(u * share.asDiagonal() * u.transpose() * feigned.asDiagonal());
 }
 
