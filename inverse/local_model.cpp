@@ -5,8 +5,8 @@
 namespace kerf::inverse {
 namespace {
 
-constexpr double usual_curvature =
-    0.5;  // of ln(force), per square of a search coordinate: what slopes may have changed
+// Of ln(force), per square of a search coordinate: by how much slopes may have changed between two points.
+constexpr double usual_curvature = 0.5;
 
 }  // namespace
 
