@@ -4,22 +4,9 @@
 #include <limits>
 
 #include "forward/bodies/walls.hpp"
-#include "forward/mpm/bspline.hpp"
+#include "forward/mpm/each_node.hpp"
 
 namespace kerf::forward::bodies {
-namespace {
-
-/// Calls visit(node, weight, slope along x, slope along y) for the nine nodes around a point.
-template <class Visit>
-void each_node(const Grid& grid, double x, double y, Visit&& visit) {
-  const Spline along(grid.column_of(x)), up(grid.row_of(y));
-  for (int j = 0; j < 3; ++j)
-    for (int i = 0; i < 3; ++i)
-      visit(grid.node(along.base + i, up.base + j), along.weight(i) * up.weight(j),
-            along.slope(i) * up.weight(j) * grid.inverse_cell_x, along.weight(i) * up.slope(j) * grid.inverse_cell_y);
-}
-
-}  // namespace
 
 void Conductor::operator()(State& state) {
   const Grid& grid = state.grid;

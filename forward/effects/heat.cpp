@@ -2,23 +2,13 @@
 
 #include <algorithm>
 
-#include "forward/mpm/bspline.hpp"
+#include "forward/mpm/each_node.hpp"
 
 namespace kerf::forward {
 namespace {
 
 double capacity(const Scene& scene) {
   return laws::density(scene.material) * scene.thermal->specific_heat;
-}
-
-/// Calls visit(node, weight, slope along x, slope along y) for the nine nodes around a particle.
-template <class Visit>
-void each_node(const Grid& grid, double x, double y, Visit&& visit) {
-  const Spline along(grid.column_of(x)), up(grid.row_of(y));
-  for (int j = 0; j < 3; ++j)
-    for (int i = 0; i < 3; ++i)
-      visit(grid.node(along.base + i, up.base + j), along.weight(i) * up.weight(j),
-            along.slope(i) * up.weight(j) * grid.inverse_cell_x, along.weight(i) * up.slope(j) * grid.inverse_cell_y);
 }
 
 }  // namespace
