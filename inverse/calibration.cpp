@@ -163,12 +163,14 @@ class Calibrator {
   }
 
   void complete_slopes(SearchResult& found) {
-    if (found.model && found.model->is_fresh() && found.model->base().point == found.best.point) return;
     try {
-      found.model = LocalModel::by_differences(objective_, found.best);
+      if (!found.model || found.model->base().point != found.best.point)
+        found.model = LocalModel(found.best, objective_.choice());
+      if (found.model->is_sure(objective_)) return;
+      found.model->difference(objective_);
       objective_.trace("differences", found.best);
     } catch (const BudgetSpent&) {
-      if (found.model && found.model->base().point != found.best.point) found.model.reset();
+      if (count(found.model->known()) == 0) found.model.reset();
     }
   }
 

@@ -7,7 +7,7 @@ namespace kerf::inverse {
 namespace {
 
 constexpr double first_radius = 0.5;    // in search coordinates: a factor of 1.65
-constexpr double largest_radius = 1.0;  // log-linear slopes do not reach further
+constexpr double largest_radius = 1.0;  // slopes do not reach further
 constexpr int most_iterations = 60;
 constexpr double standard_error_squared = 1;  // the rise of chi^2 at a distance of one standard error of one parameter
 
@@ -54,7 +54,7 @@ class GaussNewton {
   double worthwhile() const { return objective_.worthwhile(here()); }
 
   void difference() {
-    model_ = LocalModel::by_differences(objective_, here());
+    model_.difference(objective_);
     objective_.trace("differences", here());
   }
 
@@ -63,7 +63,7 @@ class GaussNewton {
     const ModelMinimum bold = propose(objective_, model_, radius_);
     const double promise = known_chi2 - bold.chi2;
     if (promise <= worthwhile()) {
-      if (model_.is_fresh() || !objective_.choice().confirm)
+      if (!objective_.choice().confirm || model_.is_sure(objective_))
         return stop(true, "no step promises a decrease that could be told from noise");
       return difference();
     }
@@ -98,14 +98,11 @@ class GaussNewton {
   void refuse(double step, double promise, const Evaluation& trial) {
     objective_.trace("trial refused", trial);
     radius_ = step / 4;
-    if (radius_ >= objective_.choice().step / 2) {
-      if (!model_.is_fresh()) difference();
-      return;
-    }
-    if (!model_.is_fresh()) {
-      radius_ = 2 * objective_.choice().step;
+    if (!model_.is_sure(objective_)) {
+      radius_ = std::max(radius_, 2 * objective_.choice().step);
       return difference();
     }
+    if (radius_ >= objective_.choice().step / 2) return;
     const bool at_noise = promise <= std::max(10 * worthwhile(), standard_error_squared);
     stop(at_noise, at_noise ? "the steps left promise little and deliver less: the end of what the simulation resolves"
                             : "steps that the slopes promise do not lower the misfit");

@@ -147,25 +147,6 @@ Verdict judge(double value, double standard_error, const Interval& interval, con
   return std::max(standard_error, half_width) <= std::abs(value) / 3.0 ? Verdict::measured : Verdict::bounded;
 }
 
-Eigen::MatrixXd residual_slopes(const LocalModel& model, const Misfit& misfit, const Eigen::VectorXd& point,
-                                double edge_force) {
-  const double tiny = 1e-5;
-  const Eigen::Index n = point.size();
-  const CutMask known = model.known();
-  Eigen::MatrixXd columns(misfit.residual_count(), n + (misfit.edge_force() ? 1 : 0));
-  const auto residuals = [&](const Eigen::VectorXd& at, double edge) {  // projecting F_b out would hide its column
-    return misfit.residuals_with(edge, model.predict(at), at, known);
-  };
-  for (Eigen::Index j = 0; j < n; ++j) {
-    Eigen::VectorXd above = point, below = point;
-    above[j] += tiny;
-    below[j] -= tiny;
-    columns.col(j) = (residuals(above, edge_force) - residuals(below, edge_force)) / (2 * tiny);
-  }
-  if (misfit.edge_force()) columns.col(n) = residuals(point, edge_force + 1) - residuals(point, edge_force);
-  return columns;
-}
-
 Identifiability identify(const LocalModel& model, const Misfit& misfit, const ParameterSpace& space,
                          const std::vector<DerivedQuantity>& derived, const std::optional<Eigen::VectorXd>& estimated) {
   const Eigen::VectorXd& centre_point = estimated ? *estimated : model.base().point;

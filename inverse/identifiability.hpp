@@ -75,10 +75,6 @@ Identifiability identify(const LocalModel& model, const Misfit& misfit, const Pa
                          const std::vector<DerivedQuantity>& derived = {},
                          const std::optional<Eigen::VectorXd>& estimate = {});
 
-/// d weighted residual / d search coordinate, and by F_b last where the job has one.
-Eigen::MatrixXd residual_slopes(const LocalModel& model, const Misfit& misfit, const Eigen::VectorXd& point,
-                                double edge_force);
-
 /// Adds the profiles about every interval, for a picture.
 void add_profiles(Identifiability& known, const LocalModel& model, const Misfit& misfit, const ParameterSpace& space,
                   const std::vector<DerivedQuantity>& derived);

@@ -1,41 +1,171 @@
 #include "inverse/local_model.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
+
+#include "inverse/quadratic_response.hpp"
 
 namespace kerf::inverse {
 namespace {
 
-// Of ln(force), per square of a search coordinate: by how much slopes may have changed between two points.
-constexpr double usual_curvature = 0.5;
+constexpr auto F_c = static_cast<Eigen::Index>(Observable::F_c);
+constexpr auto F_t = static_cast<Eigen::Index>(Observable::F_t);
+constexpr double harmless = 0.1;  // share by which errors of slopes may add to the information on a parameter
+
+/// Observables on the scale where they answer the parameters most nearly linearly: logarithms of what is positive, the
+/// chip's curvature, and F_t/F_c, which on a sliding rake face is the tangent of friction angle less rake angle
+/// (Merchant 1945) and hardly hangs on anything but friction.
+Eigen::RowVectorXd model_scale(const Eigen::RowVectorXd& simulated) {
+  Eigen::RowVectorXd scaled = simulated;
+  for (Eigen::Index k = 0; k < simulated.size(); ++k)
+    if (LocalModel::is_logarithmic(k)) scaled[k] = std::log(simulated[k]);
+  scaled[F_t] = simulated[F_t] / simulated[F_c];
+  return scaled;
+}
+
+/// What a change of d ln(observable) is in the observable's own terms.
+double unit(const Evaluation& base, Eigen::Index cut, Eigen::Index observable) {
+  return LocalModel::is_logarithmic(observable) ? 1 : typical_size(base.simulated, cut, observable);
+}
 
 }  // namespace
 
-LocalModel::LocalModel(Evaluation base)
-    : base_(std::move(base)), has_slopes_(base_.usable.size(), true), at_jump_(base_.usable.size(), false) {
-  slopes_.fill(Eigen::MatrixXd::Zero(base_.simulated.rows(), base_.point.size()));
-  slope_errors_ = slopes_;
-}
-
-double LocalModel::change(Eigen::Index cut, Eigen::Index observable, double simulated) const {
-  const double here = base_.simulated(cut, observable);
-  return is_logarithmic(observable) ? std::log(simulated / here) : simulated - here;
+LocalModel::LocalModel(Evaluation base, const OptimiserChoice& choice)
+    : base_(std::move(base)),
+      roughness_(choice.roughness),
+      step_(choice.step),
+      runs_(base_.usable.size()),
+      has_slopes_(base_.usable.size(), false),
+      at_jump_(base_.usable.size(), false) {
+  errors_ = rough_errors_ = Eigen::MatrixXd::Zero(base_.simulated.rows(), base_.point.size());
+  slopes_.fill(errors_);
+  curvatures_.fill(std::vector(base_.usable.size(), Eigen::MatrixXd(base_.point.size(), base_.point.size())));
+  learn(base_);
 }
 
 LocalModel LocalModel::by_differences(Objective& objective, const Evaluation& base) {
+  LocalModel model(base, objective.choice());
+  model.difference(objective);
+  return model;
+}
+
+void LocalModel::add(std::size_t cut, const Eigen::VectorXd& point, const RunRecord& run,
+                     const Eigen::RowVectorXd& simulated) {
+  std::vector<Run>& runs = runs_[cut];
+  Run taken{.point = point, .scaled = model_scale(simulated), .branch = run.branch};
+  const auto known = std::find_if(runs.begin(), runs.end(), [&](const Run& other) { return other.point == point; });
+  if (known == runs.end())
+    runs.push_back(std::move(taken));
+  else
+    *known = std::move(taken);
+}
+
+void LocalModel::refit() {
+  for (std::size_t cut = 0; cut < runs_.size(); ++cut) {
+    if (!base_.usable[cut]) continue;
+    const auto row = static_cast<Eigen::Index>(cut);
+    std::vector<const Run*> used;
+    at_jump_[cut] = false;
+    for (const Run& run : runs_[cut])
+      if (run.branch != base_.runs[cut].branch)
+        at_jump_[cut] = at_jump_[cut] || (run.point - base_.point).lpNorm<Eigen::Infinity>() <= 1.001 * step_;
+      else if (run.point != base_.point)
+        used.push_back(&run);
+    const auto count = static_cast<Eigen::Index>(used.size());
+    Eigen::MatrixXd steps(count, base_.point.size());
+    Eigen::MatrixXd changes(count, base_.simulated.cols());
+    const Eigen::RowVectorXd here = model_scale(base_.simulated.row(row));
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const Run& run = *used[static_cast<std::size_t>(i)];
+      steps.row(i) = (run.point - base_.point).transpose();
+      changes.row(i) = run.scaled - here;
+    }
+    const QuadraticResponse response(steps, roughness_);
+    for (Eigen::Index k = 0; k < changes.cols(); ++k) {
+      if (!changes.col(k).allFinite()) continue;  // it was not simulated
+      slopes_[static_cast<std::size_t>(k)].row(row) = response.slopes(changes.col(k)).transpose();
+      curvatures_[static_cast<std::size_t>(k)][cut] = response.curvatures(changes.col(k));
+    }
+    silence(cut, steps, changes);
+    errors_.row(row) = response.slope_errors().transpose();
+    rough_errors_.row(row) = response.rough_errors().transpose();
+    has_slopes_[cut] = response.slope_errors().maxCoeff() < 0.5 * QuadraticResponse::any_slope;
+  }
+}
+
+void LocalModel::silence(std::size_t cut, const Eigen::MatrixXd& steps, const Eigen::MatrixXd& changes) {
+  for (Eigen::Index i = 0; i < steps.rows(); ++i) {
+    Eigen::Index j = 0;
+    steps.row(i).cwiseAbs().maxCoeff(&j);
+    if ((steps.row(i).array() != 0).count() != 1) continue;
+    for (std::size_t k = 0; k < observable_count; ++k) {
+      if (changes(i, static_cast<Eigen::Index>(k)) != 0) continue;
+      slopes_[k](static_cast<Eigen::Index>(cut), j) = 0;
+      curvatures_[k][cut].row(j).setZero();
+      curvatures_[k][cut].col(j).setZero();
+    }
+  }
+}
+
+Eigen::Matrix<bool, Eigen::Dynamic, Eigen::Dynamic> LocalModel::unsure(const Objective& objective) const {
+  const Misfit& misfit = objective.misfit();
   const ParameterSpace& space = objective.space();
-  LocalModel model(base);
-  model.roughness_ = objective.choice().roughness;
+  const Eigen::Index n = base_.point.size();
+  const double edge_force = misfit.residuals(predict(base_.point), base_.point, known()).edge_force;
+  const Eigen::MatrixXd jacobian = residual_slopes(*this, misfit, base_.point, edge_force);
+  Eigen::MatrixXd information = jacobian.transpose() * jacobian;
+  for (Eigen::Index j = 0; j < n; ++j) information(j, j) += 12 / std::pow(space.upper()[j] - space.lower()[j], 2);
+  if (information.rows() > n) information(n, n) += 1e-12 * (1 + information(n, n));
+  const Eigen::VectorXd variances = information.inverse().diagonal();
+
+  Eigen::Matrix<bool, Eigen::Dynamic, Eigen::Dynamic> result(errors_.rows(), n);
+  for (Eigen::Index i = 0; i < errors_.rows(); ++i)
+    for (Eigen::Index j = 0; j < n; ++j) {
+      double feigned = 0;
+      for (Eigen::Index k = 0; k < base_.simulated.cols(); ++k) {
+        const double weight = misfit.weights()(i, k);
+        if (weight == 0) continue;
+        const double value = is_logarithmic(k) ? base_.simulated(i, k) : unit(base_, i, k);
+        feigned += std::pow(weight * value * errors_(i, j), 2);
+      }
+      const auto cut = static_cast<std::size_t>(i);
+      result(i, j) =
+          base_.usable[cut] &&
+          (!has_slopes_[cut] || feigned * variances[j] * static_cast<double>(count(base_.usable)) > harmless);
+    }
+  return result;
+}
+
+bool LocalModel::is_sure(const Objective& objective) const {
+  if (fresh_) return true;
+  for (const std::vector<Run>& runs : runs_)
+    for (const Run& run : runs)
+      if (run.borrowed) return false;
+  return !unsure(objective).any();
+}
+
+void LocalModel::difference(Objective& objective) {
+  const ParameterSpace& space = objective.space();
+  if (objective.choice().confirm) {
+    for (std::vector<Run>& runs : runs_) std::erase_if(runs, [](const Run& run) { return run.borrowed; });
+    refit();
+  }
   struct Wanted {
     std::size_t cut;
     Eigen::Index parameter;
-    int sides = 0;                           ///< differences taken so far
-    double inverse = 0, inverse_square = 0;  ///< sums over their steps
-    bool crossed = false;                    ///< the branch changed: shorter steps may stay on it
+    double side;           ///< away from the runs that are known
+    int differences = 0;   ///< taken so far
+    bool crossed = false;  ///< the branch changed: shorter steps may stay on it
   };
   std::vector<Wanted> wanted;
+  const auto improvable = unsure(objective);
   for (Eigen::Index j = 0; j < space.dimension(); ++j)
-    for (std::size_t cut = 0; cut < objective.cuts(); ++cut)
-      if (base.usable[cut]) wanted.push_back({.cut = cut, .parameter = j});
+    for (std::size_t cut = 0; cut < objective.cuts(); ++cut) {
+      if (!improvable(static_cast<Eigen::Index>(cut), j)) continue;
+      double known = 0;
+      for (const Run& run : runs_[cut]) known += run.point[j] - base_.point[j];
+      wanted.push_back({.cut = cut, .parameter = j, .side = known > 1e-9 ? -1.0 : 1.0});
+    }
 
   for (const double factor : {1.0, -1.0, 0.5, -0.5, 0.25, -0.25, 0.125, -0.125}) {
     const bool whole = std::abs(factor) == 1, shrunk = std::abs(factor) < 0.5;
@@ -43,53 +173,32 @@ LocalModel LocalModel::by_differences(Objective& objective, const Evaluation& ba
     std::vector<Objective::Probe> probes;
     std::vector<Wanted*> probed;
     for (Wanted& slope : wanted) {
-      if (slope.sides >= sides || (shrunk && !slope.crossed)) continue;
+      if (slope.differences >= sides || (shrunk && !slope.crossed)) continue;
       const Eigen::Index j = slope.parameter;
       const double range = space.upper()[j] - space.lower()[j];
-      const double step = std::min(objective.choice().step, 0.4 * range);
-      const bool room_above = base.point[j] + step <= space.upper()[j];
-      Eigen::VectorXd point = base.point;
-      point[j] += (room_above ? 1 : -1) * factor * step;
+      const double step = slope.side * std::min(objective.choice().step, 0.4 * range);
+      const double there = base_.point[j] + step;
+      const bool room = there >= space.lower()[j] && there <= space.upper()[j];
+      Eigen::VectorXd point = base_.point;
+      point[j] += (room ? 1 : -1) * factor * step;
       if (point[j] < space.lower()[j] || point[j] > space.upper()[j]) continue;
       probes.push_back({std::move(point), slope.cut});
       probed.push_back(&slope);
     }
     if (probes.empty()) continue;
-    const std::vector<RunRecord> runs = objective.simulate(probes);
-    for (std::size_t p = 0; p < runs.size(); ++p) {
+    const std::vector<RunRecord> records = objective.simulate(probes);
+    for (std::size_t p = 0; p < records.size(); ++p) {
       Wanted& slope = *probed[p];
-      if (!objective.misfit().is_usable(slope.cut, runs[p])) continue;
-      if (runs[p].branch != base.runs[slope.cut].branch) {
-        slope.crossed = model.at_jump_[slope.cut] = true;
-        continue;
-      }
-      const auto row = static_cast<Eigen::Index>(slope.cut);
-      const Eigen::Index j = slope.parameter;
-      const Eigen::RowVectorXd simulated = objective.misfit().observations(slope.cut, runs[p]);
-      for (Eigen::Index k = 0; k < simulated.size(); ++k) {
-        if (objective.misfit().weights()(row, k) == 0) continue;
-        double& mean = model.slopes_[static_cast<std::size_t>(k)](row, j);
-        mean += (model.change(row, k, simulated[k]) / (probes[p].point[j] - base.point[j]) - mean) / (slope.sides + 1);
-      }
-      const double step = probes[p].point[j] - base.point[j];
-      slope.inverse += 1 / step;
-      slope.inverse_square += 1 / (step * step);
-      ++slope.sides;
+      if (!objective.misfit().is_usable(slope.cut, records[p])) continue;
+      add(slope.cut, probes[p].point, records[p], objective.misfit().observations(slope.cut, records[p]));
+      if (records[p].branch == base_.runs[slope.cut].branch)
+        ++slope.differences;
+      else
+        slope.crossed = true;
     }
   }
-  for (const Wanted& slope : wanted) {
-    if (slope.sides == 0) {
-      model.has_slopes_[slope.cut] = false;
-      continue;
-    }
-    // Every difference has a roughness of its own at its far end, and that of the base in common with the others.
-    const double rough = std::sqrt(slope.inverse_square + slope.inverse * slope.inverse) / slope.sides;
-    const auto row = static_cast<Eigen::Index>(slope.cut);
-    for (Eigen::Index k = 0; k < base.simulated.cols(); ++k)
-      model.slope_errors_[static_cast<std::size_t>(k)](row, slope.parameter) =
-          rough * objective.choice().roughness * (is_logarithmic(k) ? 1 : typical_size(base.simulated, row, k));
-  }
-  return model;
+  refit();
+  fresh_ = true;
 }
 
 Observations LocalModel::predict(const Eigen::VectorXd& point) const {
@@ -102,36 +211,76 @@ Observations LocalModel::predict(const Eigen::VectorXd& point) const {
 }
 
 void LocalModel::learn(const Evaluation& other) {
+  for (std::size_t cut = 0; cut < runs_.size(); ++cut)
+    if (other.usable[cut]) add(cut, other.point, other.runs[cut], other.simulated.row(static_cast<Eigen::Index>(cut)));
+  refit();
+}
+
+void LocalModel::borrow_for(const Evaluation& other) {
+  const Observations predicted = predict(other.point);
   const Eigen::VectorXd step = other.point - base_.point;
-  const double length2 = step.squaredNorm();
-  if (length2 == 0) return;
-  const double told = 1 / (1 + 2 * std::pow(roughness_ / (0.5 * usual_curvature * length2), 2));
-  for (std::size_t cut = 0; cut < base_.runs.size(); ++cut) {
-    if (!base_.usable[cut] || !other.usable[cut] || base_.runs[cut].branch != other.runs[cut].branch) continue;
+  for (std::size_t cut = 0; cut < runs_.size(); ++cut) {
     const auto row = static_cast<Eigen::Index>(cut);
-    for (std::size_t k = 0; k < observable_count; ++k) {
-      const auto column = static_cast<Eigen::Index>(k);
-      const double surprise = change(row, column, other.simulated(row, column)) - slopes_[k].row(row).dot(step);
-      if (std::isfinite(surprise)) slopes_[k].row(row) += told * surprise / length2 * step.transpose();
+    for (std::size_t k = 0; k < observable_count; ++k) slopes_[k].row(row) += (curvatures_[k][cut] * step).transpose();
+    if (!base_.usable[cut] || !other.usable[cut]) {
+      runs_[cut].clear();
+      continue;
+    }
+    const Eigen::RowVectorXd shift = model_scale(other.simulated.row(row)) - model_scale(predicted.row(row));
+    std::erase_if(runs_[cut], [&](const Run& run) { return run.branch != base_.runs[cut].branch; });
+    for (Run& run : runs_[cut]) {
+      run.scaled += shift;
+      run.branch = other.runs[cut].branch;
+      run.borrowed = true;
     }
   }
+  base_ = other;
+  fresh_ = false;
 }
 
 LocalModel LocalModel::scaled(const Eigen::MatrixXd& share) const {
   LocalModel result = *this;
   for (Eigen::MatrixXd& slopes : result.slopes_) slopes *= share;
+  for (std::vector<Eigen::MatrixXd>& curvatures : result.curvatures_)
+    for (Eigen::MatrixXd& bend : curvatures) bend = share.transpose() * bend * share;
   return result;
 }
 
 void LocalModel::move_to(const Evaluation& other) {
   if (other.point != base_.point) fresh_ = false;
   base_ = other;
+  learn(other);
+}
+
+Eigen::MatrixXd LocalModel::slope_errors(Eigen::Index observable) const {
+  Eigen::MatrixXd errors = rough_errors_;
+  for (Eigen::Index i = 0; i < errors.rows(); ++i) errors.row(i) *= unit(base_, i, observable);
+  return errors;
 }
 
 bool LocalModel::branches_differ(const Evaluation& a, const Evaluation& b) {
   for (std::size_t cut = 0; cut < a.runs.size(); ++cut)
     if (a.usable[cut] && b.usable[cut] && a.runs[cut].branch != b.runs[cut].branch) return true;
   return false;
+}
+
+Eigen::MatrixXd residual_slopes(const LocalModel& model, const Misfit& misfit, const Eigen::VectorXd& point,
+                                double edge_force) {
+  const double tiny = 1e-5;
+  const Eigen::Index n = point.size();
+  const CutMask known = model.known();
+  Eigen::MatrixXd columns(misfit.residual_count(), n + (misfit.edge_force() ? 1 : 0));
+  const auto residuals = [&](const Eigen::VectorXd& at, double edge) {  // projecting F_b out would hide its column
+    return misfit.residuals_with(edge, model.predict(at), at, known);
+  };
+  for (Eigen::Index j = 0; j < n; ++j) {
+    Eigen::VectorXd above = point, below = point;
+    above[j] += tiny;
+    below[j] -= tiny;
+    columns.col(j) = (residuals(above, edge_force) - residuals(below, edge_force)) / (2 * tiny);
+  }
+  if (misfit.edge_force()) columns.col(n) = residuals(point, edge_force + 1) - residuals(point, edge_force);
+  return columns;
 }
 
 }  // namespace kerf::inverse

@@ -9,22 +9,29 @@
 
 namespace kerf::inverse {
 
-/// The observables near a simulated point: ln F_c, F_t, ln(chip ratio) and the chip curvature linear in the search
-/// coordinates. Slopes come from differences of simulations and are then improved by every further simulation
-/// (Broyden's update). A difference never spans two branches of the cut (touching, bending), where slopes mean nothing.
+/// The observables near a simulated point, on the scale where they answer most nearly linearly (see model_scale), as
+/// quadratics of the search coordinates that QuadraticResponse finds through all runs of a cut on one branch. Slopes
+/// mean nothing between two branches (touching, bending), and beyond `reach` they stay as they are there: a parabola
+/// would turn back.
 class LocalModel {
  public:
-  /// Slopes by one-sided differences inside the bounds (two-sided ones if the job wants them central), all as one
-  /// batch. A run that fails or lands on another branch is tried again on the other side and at half the step, near a
-  /// jump down to an eighth; a cut with a slope still missing is left out of the model. Throws BudgetSpent.
+  /// Nothing but the base; every slope is unsure.
+  LocalModel(Evaluation base, const OptimiserChoice& choice);
+  /// With differences about it.
   static LocalModel by_differences(Objective& objective, const Evaluation& base);
 
+  /// Simulates one difference (two on both sides if the job wants them central) for every slope whose error matters,
+  /// inside the bounds and away from what is known, all as one batch. A run that fails or lands on another branch is
+  /// tried again on the other side and at half the step, near a jump down to an eighth; a cut with a slope still
+  /// missing is left out of the model. Throws BudgetSpent.
+  void difference(Objective& objective);
+  /// A difference would not change what is known of the parameters: all were taken at the present base, or together the
+  /// errors of the slopes add less than a tenth to the information on any of them.
+  bool is_sure(const Objective& objective) const;
+
   const Evaluation& base() const { return base_; }
-  /// Slopes were differenced at the present base.
-  bool is_fresh() const { return fresh_; }
   /// Cuts that the model predicts.
   CutMask known() const { return both(has_slopes_, base_.usable); }
-
   /// Cuts of which a difference landed on another branch: the point lies within a step of a jump.
   const CutMask& at_jump() const { return at_jump_; }
 
@@ -34,48 +41,84 @@ class LocalModel {
   template <class T>
   T predict(Eigen::Index cut, Eigen::Index observable, const T* const* point) const {
     using std::exp;
-    const auto& slopes = slopes_[static_cast<std::size_t>(observable)];
-    T change(0.0);
-    for (Eigen::Index j = 0; j < slopes.cols(); ++j) change += slopes(cut, j) * (point[j][0] - base_.point[j]);
     const double here = base_.simulated(cut, observable);
-    return is_logarithmic(observable) ? here * exp(change) : here + change;
+    if (observable == static_cast<Eigen::Index>(Observable::F_t)) {
+      const auto F_c = static_cast<Eigen::Index>(Observable::F_c);
+      return predict(cut, F_c, point) * (here / base_.simulated(cut, F_c) + change(cut, observable, point));
+    }
+    return is_logarithmic(observable) ? here * exp(change(cut, observable, point))
+                                      : here + change(cut, observable, point);
   }
 
-  /// Makes the model agree with `other` by the smallest change of the slopes, as far as the surprise is not likelier to
-  /// be the roughness of the two than a curved response.
+  /// Takes another simulated point into account.
   void learn(const Evaluation& other);
-  /// The same slopes about a run of another fidelity: never fresh.
-  void borrow_for(const Evaluation& other) {
-    base_ = other;
-    fresh_ = false;
-  }
-  /// d ln F_c, d F_t or d ln(chip ratio) by a search coordinate: cuts x parameters.
+  /// The same response about a run of another fidelity.
+  void borrow_for(const Evaluation& other);
+  /// The same runs about another simulated point.
+  void move_to(const Evaluation& other);
+
+  /// Of an observable on the model's scale by a search coordinate: cuts x parameters.
   const Eigen::MatrixXd& slopes(Eigen::Index observable) const { return slopes_[static_cast<std::size_t>(observable)]; }
-  /// Standard errors of the slopes, from how rough the simulated values are over the steps of their differences.
-  const Eigen::MatrixXd& slope_errors(Eigen::Index observable) const {
-    return slope_errors_[static_cast<std::size_t>(observable)];
-  }
+  /// Standard errors of d ln(observable), of F_t and curvature d(observable), that come from how rough the simulated
+  /// values are: cuts x parameters.
+  Eigen::MatrixXd slope_errors(Eigen::Index observable) const;
   /// With every slope by the coordinates replaced by its product with `share`: parameters x parameters.
   LocalModel scaled(const Eigen::MatrixXd& share) const;
   static bool is_logarithmic(Eigen::Index observable) { return is_positive(static_cast<std::size_t>(observable)); }
-
-  /// The same slopes about another simulated point.
-  void move_to(const Evaluation& other);
 
   /// True when a cut usable at both points is on different branches.
   static bool branches_differ(const Evaluation& a, const Evaluation& b);
 
  private:
-  explicit LocalModel(Evaluation base);
-  /// Change of one transformed observable of `cut` between the base and a run.
-  double change(Eigen::Index cut, Eigen::Index observable, double simulated) const;
+  static constexpr double reach = 0.5;  ///< in search coordinates
+
+  struct Run {
+    Eigen::VectorXd point;
+    Eigen::RowVectorXd scaled;  ///< the observables on the model's scale
+    forward::Branch branch;
+    bool borrowed = false;  ///< from another fidelity
+  };
+
+  /// g d + d^T H d / 2, along every ray from the base straight on beyond the reach.
+  template <class T>
+  T change(Eigen::Index cut, Eigen::Index observable, const T* const* point) const {
+    using std::sqrt;
+    const auto k = static_cast<std::size_t>(observable);
+    const Eigen::MatrixXd& bend = curvatures_[k][static_cast<std::size_t>(cut)];
+    T straight(0.0), bent(0.0), length2(0.0);
+    for (Eigen::Index i = 0; i < bend.rows(); ++i) {
+      const T step = point[i][0] - base_.point[i];
+      straight += slopes_[k](cut, i) * step;
+      length2 += step * step;
+      for (Eigen::Index j = 0; j < bend.cols(); ++j) bent += bend(i, j) * step * (point[j][0] - base_.point[j]);
+    }
+    T share(1.0);
+    if (length2 > reach * reach) share = reach / sqrt(length2);
+    return straight + share * (1.0 - 0.5 * share) * bent;
+  }
+
+  void add(std::size_t cut, const Eigen::VectorXd& point, const RunRecord& run, const Eigen::RowVectorXd& simulated);
+  void refit();
+  /// A parameter alone that changes an observable by not one bit does not act on it: no fit through other runs may say
+  /// so. One step and one change of every run per row.
+  void silence(std::size_t cut, const Eigen::MatrixXd& steps, const Eigen::MatrixXd& changes);
+  /// Of the slopes, those that a difference should improve: cuts x parameters.
+  Eigen::Matrix<bool, Eigen::Dynamic, Eigen::Dynamic> unsure(const Objective& objective) const;
 
   Evaluation base_;
-  std::array<Eigen::MatrixXd, observable_count> slopes_, slope_errors_;  ///< cuts x parameters
-  double roughness_ = 0;                                                 ///< of the simulated values, relative
+  double roughness_, step_;                                                ///< see OptimiserChoice
+  std::vector<std::vector<Run>> runs_;                                     ///< of every cut
+  std::array<Eigen::MatrixXd, observable_count> slopes_;                   ///< cuts x parameters
+  std::array<std::vector<Eigen::MatrixXd>, observable_count> curvatures_;  ///< of every cut: parameters x parameters
+  Eigen::MatrixXd errors_, rough_errors_;  ///< of the slopes, all and from roughness: cuts x parameters
   CutMask has_slopes_, at_jump_;
-  bool fresh_ = true;
+  bool fresh_ = false;  ///< every difference that matters was taken at the present base
 };
+
+/// Derivatives of the weighted residuals by the search coordinates at `point`, and by F_b as the last column if the job
+/// has one: residuals x parameters.
+Eigen::MatrixXd residual_slopes(const LocalModel& model, const Misfit& misfit, const Eigen::VectorXd& point,
+                                double edge_force);
 
 /// The minimum of a misfit over a local model.
 struct ModelMinimum {

@@ -93,6 +93,7 @@ bool Misfit::is_usable(std::size_t cut, const RunRecord& run) const {
   for (Eigen::Index k = 0; k < simulated.size(); ++k) {
     if (weights_(static_cast<Eigen::Index>(cut), k) == 0) continue;
     if (!std::isfinite(simulated[k]) || (is_positive(static_cast<std::size_t>(k)) && simulated[k] <= 0)) return false;
+    if (k == F_t && !(simulated[F_c] > 0)) return false;
   }
   return true;
 }

@@ -62,8 +62,8 @@ class Misfit {
   /// What a run shows of a cut: one number per Observable; of a specimen the resistance at the point's extension.
   Eigen::RowVectorXd observations(std::size_t cut, const RunRecord& run) const;
 
-  /// A run that can be compared: accepted, with finite observables where some were measured, F_c and chip ratio
-  /// positive.
+  /// A run that can be compared: accepted, with finite observables where some were measured, chip ratio and
+  /// F_c positive.
   bool is_usable(std::size_t cut, const RunRecord& run) const;
 
   /// Adds the simulation's own standard errors to the weights, as they are at `reference`, and keeps them from then on

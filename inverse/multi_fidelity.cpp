@@ -91,6 +91,7 @@ SearchResult multi_fidelity(Objective& objective, const Evaluation& start) {
   Misfit misfit = objective.misfit();
   CoarseModel coarse(objective, misfit);
   Evaluation best = start;
+  std::vector<Evaluation> fine{start};
   std::optional<LocalModel> slopes;
   try {
     FidelityCorrection correction(start, coarse.raw_like(start));
@@ -108,6 +109,7 @@ SearchResult multi_fidelity(Objective& objective, const Evaluation& start) {
       const double worthwhile = objective.worthwhile(best);
       if (promise <= worthwhile) break;
       const Evaluation trial = objective.evaluate(found.best.point);
+      fine.push_back(trial);
       const CutMask common = both(best.usable, trial.usable);
       const bool enough = static_cast<double>(count(common)) >=
                           (1 - objective.budget().failing_share) * static_cast<double>(objective.cuts());
@@ -122,6 +124,7 @@ SearchResult multi_fidelity(Objective& objective, const Evaluation& start) {
   }
   if (!slopes) return gauss_newton(objective, best);
   slopes->borrow_for(best);
+  for (const Evaluation& known : fine) slopes->learn(known);
   return gauss_newton(objective, *slopes);
 }
 

@@ -37,14 +37,15 @@ class ScratchFile {
   fs::path path_;
 };
 
-void use_slopes(const Job& job, RunDatabase& database, const Eigen::VectorXd& point, const std::string& where,
+void use_slopes(const Job& job, RunDatabase& database, const Eigen::VectorXd& point,
+                const std::optional<LocalModel>& known, const std::string& where,
                 const std::function<void(const KnownEstimate&)>& use) {
   const ParameterSpace space(job);
   Misfit misfit(job, space);
   Objective objective(job, space, misfit, database, no_limit);
   const Evaluation at = objective.evaluate(point);
   misfit.include_simulation_errors(at);
-  const LocalModel model = seen_slopes(LocalModel::by_differences(objective, at), misfit);
+  const LocalModel model = known ? *known : seen_slopes(LocalModel::by_differences(objective, at), misfit);
   if (count(model.known()) == 0) throw InputError(where + ": no cut has slopes at the estimate");
   use({.job = job, .model = model, .misfit = misfit, .slopes_of = [&](const Job& other) {
          const ParameterSpace other_space(other);
@@ -68,14 +69,14 @@ void with_known_estimate(const fs::path& job_or_folder, const std::string& code,
     const Calibration calibration = calibrate(folder.job(), database);
     Job job = folder.job();
     job.optimiser = calibration.choice;  // whose steps the journal has
-    return use_slopes(job, database, calibration.fit.at.point, job_or_folder.string(), use);
+    return use_slopes(job, database, calibration.fit.at.point, calibration.fit.model, job_or_folder.string(), use);
   }
   Job job = read_job(job_or_folder);
   job.optimiser.roughness = 0;
   const ScratchFile scratch;
   Journal journal(scratch.path());
   RunDatabase database(journal, code, closed_form_cut, 1);
-  use_slopes(job, database, find_start(job, ParameterSpace(job)).point, job_or_folder.string(), use);
+  use_slopes(job, database, find_start(job, ParameterSpace(job)).point, {}, job_or_folder.string(), use);
 }
 
 }  // namespace kerf::commands

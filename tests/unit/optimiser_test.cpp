@@ -321,7 +321,7 @@ TEST(LocalModel, CentralDifferencesHaveNoErrorOfFirstOrder) {
   const TemporaryFolder folder;
   const auto slope = [&](bool central, double step) {
     const std::string text =
-        std::string(job_text) + fmt::format("[optimiser]\nstep = {}\ncentral = {}\n", step, central);
+        std::string(job_text) + fmt::format("[optimiser]\nstep = {}\ncentral = {}\nnoise = 1e-7\n", step, central);
     const inverse::Job job = write_job(folder, text);
     const inverse::ParameterSpace space(job);
     inverse::Misfit misfit(job, space);
@@ -336,6 +336,69 @@ TEST(LocalModel, CentralDifferencesHaveNoErrorOfFirstOrder) {
   };
   const double exact = slope(true, 1e-4);
   EXPECT_LT(std::abs(slope(true, 0.2) - exact), 0.2 * std::abs(slope(false, 0.2) - exact));
+}
+
+TEST(LocalModel, IsSureNearItsDifferencesAndTheyCostNoMoreRuns) {
+  const TemporaryFolder folder;
+  const inverse::Job job = write_job(folder);
+  const inverse::ParameterSpace space(job);
+  inverse::Misfit misfit(job, space);
+  inverse::Journal journal(folder / "journal.jsonl");
+  inverse::RunDatabase database(journal, "test", synthetic_cut, 2);
+  inverse::Objective objective(job, space, misfit, database, 1000);
+  Eigen::VectorXd point(3);
+  point << space.coordinate(0, 60), space.coordinate(1, 2), space.coordinate(2, 0.3);
+  auto model = inverse::LocalModel(objective.evaluate(point), objective.choice());
+  EXPECT_FALSE(model.is_sure(objective));
+  model.difference(objective);
+  EXPECT_TRUE(model.is_sure(objective));
+  EXPECT_EQ(database.runs(), 4u + 12u);
+
+  const auto slope_at = [&](const Eigen::VectorXd& there) {
+    return inverse::LocalModel::by_differences(objective, objective.evaluate(there)).slopes(0)(3, 0);
+  };
+  const inverse::Evaluation near = objective.evaluate(point + Eigen::Vector3d(0.003, 0.003, -0.003));
+  const inverse::Evaluation far = objective.evaluate(point + Eigen::Vector3d(0.5, -0.8, 0.7));
+  model.move_to(near);
+  EXPECT_TRUE(model.is_sure(objective));
+  EXPECT_NEAR(model.slopes(0)(3, 0), slope_at(near.point), 0.01);
+  model.move_to(far);
+  EXPECT_FALSE(model.is_sure(objective)) << "curvature may have turned the slopes by then";
+  const std::size_t before = database.runs();
+  model.difference(objective);
+  EXPECT_TRUE(model.is_sure(objective));
+  EXPECT_LE(database.runs(), before + 12);
+  EXPECT_NEAR(model.slopes(0)(3, 0), slope_at(far.point), 0.02);
+}
+
+TEST(LocalModel, GoesOnStraightBeyondItsReach) {
+  const TemporaryFolder folder;
+  const inverse::Job job = write_job(folder);
+  const inverse::ParameterSpace space(job);
+  inverse::Misfit misfit(job, space);
+  inverse::Journal journal(folder / "journal.jsonl");
+  inverse::RunDatabase database(journal, "test", synthetic_cut, 2);
+  inverse::Objective objective(job, space, misfit, database, 1000);
+  Eigen::VectorXd point(3);
+  point << space.coordinate(0, 60), space.coordinate(1, 2), space.coordinate(2, 0.3);
+  auto model = inverse::LocalModel::by_differences(objective, objective.evaluate(point));
+  for (const double step : {-0.4, -0.2, 0.2, 0.4}) {
+    Eigen::VectorXd there = point;
+    there[1] += step;
+    model.learn(objective.evaluate(there));
+  }
+  const auto logarithm = [&](double step) {
+    Eigen::VectorXd there = point;
+    there[1] += step;
+    return std::log(model.predict(there)(0, 0));
+  };
+  const double tiny = 1e-3;
+  const auto slope = [&](double step) { return (logarithm(step + tiny) - logarithm(step - tiny)) / (2 * tiny); };
+  const double bend = slope(0.3) - slope(-0.3);
+  EXPECT_GT(bend, 0.03) << "toughness is the larger share of the force the more of it there is";
+  EXPECT_NEAR(slope(2), slope(0.51), 1e-6);
+  EXPECT_NEAR(slope(-2), slope(-0.51), 1e-6);
+  EXPECT_NEAR(slope(0.52), slope(0.48), 0.1 * bend);
 }
 
 TEST(Calibration, SaysThatTheDataSitAtAJump) {
