@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <numbers>
 
 #include "inverse/quadratic_response.hpp"
 
@@ -10,7 +11,8 @@ namespace {
 
 constexpr auto F_c = static_cast<Eigen::Index>(Observable::F_c);
 constexpr auto F_t = static_cast<Eigen::Index>(Observable::F_t);
-constexpr double harmless = 0.1;  // share by which errors of slopes may add to the information on a parameter
+constexpr double harmless = 0.1;          // share by which errors of slopes may add to the information on a parameter
+constexpr double worse_than_fresh = 1.2;  // another difference must be worth its run
 
 /// Observables on the scale where they answer the parameters most nearly linearly: logarithms of what is positive, the
 /// chip's curvature, and F_t/F_c, which on a sliding rake face is the tangent of friction angle less rake angle
@@ -118,6 +120,8 @@ Eigen::Matrix<bool, Eigen::Dynamic, Eigen::Dynamic> LocalModel::unsure(const Obj
   if (information.rows() > n) information(n, n) += 1e-12 * (1 + information(n, n));
   const Eigen::VectorXd variances = information.inverse().diagonal();
 
+  const double fresh =
+      std::hypot(std::numbers::sqrt2 * roughness_ / step_, 0.5 * QuadraticResponse::usual_curvature * step_);
   Eigen::Matrix<bool, Eigen::Dynamic, Eigen::Dynamic> result(errors_.rows(), n);
   for (Eigen::Index i = 0; i < errors_.rows(); ++i)
     for (Eigen::Index j = 0; j < n; ++j) {
@@ -129,9 +133,8 @@ Eigen::Matrix<bool, Eigen::Dynamic, Eigen::Dynamic> LocalModel::unsure(const Obj
         feigned += std::pow(weight * value * errors_(i, j), 2);
       }
       const auto cut = static_cast<std::size_t>(i);
-      result(i, j) =
-          base_.usable[cut] &&
-          (!has_slopes_[cut] || feigned * variances[j] * static_cast<double>(count(base_.usable)) > harmless);
+      const bool matters = feigned * variances[j] * static_cast<double>(count(base_.usable)) > harmless;
+      result(i, j) = base_.usable[cut] && (!has_slopes_[cut] || (matters && errors_(i, j) > worse_than_fresh * fresh));
     }
   return result;
 }

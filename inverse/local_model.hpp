@@ -25,8 +25,8 @@ class LocalModel {
   /// tried again on the other side and at half the step, near a jump down to an eighth; a cut with a slope still
   /// missing is left out of the model. Throws BudgetSpent.
   void difference(Objective& objective);
-  /// A difference would not change what is known of the parameters: all were taken at the present base, or together the
-  /// errors of the slopes add less than a tenth to the information on any of them.
+  /// Differences would not change what is known of the parameters: they were taken at the present base, or would be no
+  /// better than what other runs tell, or the errors of the slopes add less than a tenth to the information on any.
   bool is_sure(const Objective& objective) const;
 
   const Evaluation& base() const { return base_; }
