@@ -62,11 +62,10 @@ class GaussNewton {
     const double known_chi2 = objective_.misfit().chi2(here(), model_.known());
     const ModelMinimum bold = propose(objective_, model_, radius_);
     const double promise = known_chi2 - bold.chi2;
-    if (promise <= worthwhile()) {
-      if (!objective_.choice().confirm || model_.is_sure(objective_))
-        return stop(true, "no step promises a decrease that could be told from noise");
-      return difference();
-    }
+    // The slopes at the end are wanted anyway; once it is near, they come before another step.
+    const bool near = promise <= std::max(worthwhile(), standard_error_squared);
+    if (near && objective_.choice().confirm && !model_.is_sure(objective_)) return difference();
+    if (promise <= worthwhile()) return stop(true, "no step promises a decrease that could be told from noise");
     std::vector<Eigen::VectorXd> points{bold.point};
     const ModelMinimum careful = propose(objective_, model_, radius_ / 3);
     if ((careful.point - bold.point).lpNorm<Eigen::Infinity>() > 0.05 * radius_) points.push_back(careful.point);
@@ -92,7 +91,10 @@ class GaussNewton {
     if (best_decrease < 0.25 * promise) radius_ = std::max(0.5 * step, 2 * objective_.choice().step);
     model_.move_to(*best);
     objective_.trace("trial accepted", here());
-    if (new_branch) difference();
+    if (new_branch) {
+      model_.difference_unknown(objective_);
+      objective_.trace("differences on another branch", here());
+    }
   }
 
   void refuse(double step, double promise, const Evaluation& trial) {

@@ -11,7 +11,8 @@ namespace {
 
 constexpr auto F_c = static_cast<Eigen::Index>(Observable::F_c);
 constexpr auto F_t = static_cast<Eigen::Index>(Observable::F_t);
-constexpr double harmless = 0.1;          // share by which errors of slopes may add to the information on a parameter
+constexpr double harmless = 0.1;  // share by which errors of slopes may add to the information on a parameter
+constexpr double unknown_error = 0.5 * QuadraticResponse::any_slope;
 constexpr double worse_than_fresh = 1.2;  // another difference must be worth its run
 
 /// Observables on the scale where they answer the parameters most nearly linearly: logarithms of what is positive, the
@@ -91,7 +92,7 @@ void LocalModel::refit() {
     silence(cut, steps, changes);
     errors_.row(row) = response.slope_errors().transpose();
     rough_errors_.row(row) = response.rough_errors().transpose();
-    has_slopes_[cut] = response.slope_errors().maxCoeff() < 0.5 * QuadraticResponse::any_slope;
+    has_slopes_[cut] = response.slope_errors().maxCoeff() <= unknown_error;
   }
 }
 
@@ -109,7 +110,7 @@ void LocalModel::silence(std::size_t cut, const Eigen::MatrixXd& steps, const Ei
   }
 }
 
-Eigen::Matrix<bool, Eigen::Dynamic, Eigen::Dynamic> LocalModel::unsure(const Objective& objective) const {
+LocalModel::SlopeMask LocalModel::unsure(const Objective& objective) const {
   const Misfit& misfit = objective.misfit();
   const ParameterSpace& space = objective.space();
   const Eigen::Index n = base_.point.size();
@@ -122,7 +123,7 @@ Eigen::Matrix<bool, Eigen::Dynamic, Eigen::Dynamic> LocalModel::unsure(const Obj
 
   const double fresh =
       std::hypot(std::numbers::sqrt2 * roughness_ / step_, 0.5 * QuadraticResponse::usual_curvature * step_);
-  Eigen::Matrix<bool, Eigen::Dynamic, Eigen::Dynamic> result(errors_.rows(), n);
+  SlopeMask result(errors_.rows(), n);
   for (Eigen::Index i = 0; i < errors_.rows(); ++i)
     for (Eigen::Index j = 0; j < n; ++j) {
       double feigned = 0;
@@ -148,11 +149,23 @@ bool LocalModel::is_sure(const Objective& objective) const {
 }
 
 void LocalModel::difference(Objective& objective) {
-  const ParameterSpace& space = objective.space();
   if (objective.choice().confirm) {
     for (std::vector<Run>& runs : runs_) std::erase_if(runs, [](const Run& run) { return run.borrowed; });
     refit();
   }
+  improve(objective, unsure(objective));
+  fresh_ = true;
+}
+
+void LocalModel::difference_unknown(Objective& objective) {
+  SlopeMask unknown = errors_.array() > unknown_error;
+  for (std::size_t cut = 0; cut < base_.usable.size(); ++cut)
+    if (!base_.usable[cut]) unknown.row(static_cast<Eigen::Index>(cut)).setConstant(false);
+  improve(objective, unknown);
+}
+
+void LocalModel::improve(Objective& objective, const SlopeMask& chosen) {
+  const ParameterSpace& space = objective.space();
   struct Wanted {
     std::size_t cut;
     Eigen::Index parameter;
@@ -161,10 +174,9 @@ void LocalModel::difference(Objective& objective) {
     bool crossed = false;  ///< the branch changed: shorter steps may stay on it
   };
   std::vector<Wanted> wanted;
-  const auto improvable = unsure(objective);
   for (Eigen::Index j = 0; j < space.dimension(); ++j)
     for (std::size_t cut = 0; cut < objective.cuts(); ++cut) {
-      if (!improvable(static_cast<Eigen::Index>(cut), j)) continue;
+      if (!chosen(static_cast<Eigen::Index>(cut), j)) continue;
       double known = 0;
       for (const Run& run : runs_[cut]) known += run.point[j] - base_.point[j];
       wanted.push_back({.cut = cut, .parameter = j, .side = known > 1e-9 ? -1.0 : 1.0});
@@ -201,7 +213,6 @@ void LocalModel::difference(Objective& objective) {
     }
   }
   refit();
-  fresh_ = true;
 }
 
 Observations LocalModel::predict(const Eigen::VectorXd& point) const {

@@ -25,6 +25,8 @@ class LocalModel {
   /// tried again on the other side and at half the step, near a jump down to an eighth; a cut with a slope still
   /// missing is left out of the model. Throws BudgetSpent.
   void difference(Objective& objective);
+  /// The same for slopes of which nothing is known, as those of a cut are that jumped to another branch with the base.
+  void difference_unknown(Objective& objective);
   /// Differences would not change what is known of the parameters: they were taken at the present base, or would be no
   /// better than what other runs tell, or the errors of the slopes add less than a tenth to the information on any.
   bool is_sure(const Objective& objective) const;
@@ -103,7 +105,10 @@ class LocalModel {
   /// so. One step and one change of every run per row.
   void silence(std::size_t cut, const Eigen::MatrixXd& steps, const Eigen::MatrixXd& changes);
   /// Of the slopes, those that a difference should improve: cuts x parameters.
-  Eigen::Matrix<bool, Eigen::Dynamic, Eigen::Dynamic> unsure(const Objective& objective) const;
+  using SlopeMask = Eigen::Matrix<bool, Eigen::Dynamic, Eigen::Dynamic>;
+  SlopeMask unsure(const Objective& objective) const;
+  /// Simulates differences for the slopes chosen.
+  void improve(Objective& objective, const SlopeMask& chosen);
 
   Evaluation base_;
   double roughness_, step_;                                                ///< see OptimiserChoice

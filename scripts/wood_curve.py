@@ -3,7 +3,7 @@
 specimen dcb_rcurve, with known toughnesses and seeded noise. Nobody measured them; they ask whether a calibration finds
 what went in.
 
-    scripts/wood_curve.py [--initiation 215] [--bridging 405] [--tool cuts] [--seed 7] [--noise 0.02] > CURVE.csv
+    scripts/wood_curve.py [--initiation 215] [--bridging 405] [--tool cuts] [--preset standard] [--seed 7] [--noise 0.02] > CURVE.csv
     scripts/wood_curve.py --r-curve [--noise 0.03] > R_CURVE.csv
 """
 import argparse
@@ -23,6 +23,7 @@ def main():
     parser.add_argument("--initiation", default="215", help="J/m^2")
     parser.add_argument("--bridging", default="405", help="J/m^2")
     parser.add_argument("--tool", default="cuts", choices=["cuts", "ignores"])
+    parser.add_argument("--preset", help="of the cuts; without one, what the scene says")
     parser.add_argument("--r-curve", action="store_true", help="of the specimen, instead of a planing curve")
     parser.add_argument("--noise", type=float, default=0.02)
     parser.add_argument("--seed", type=int, default=7)
@@ -33,6 +34,8 @@ def main():
 
 def simulate(options, scene, *settings):
     command = [options.kerf, "simulate", ROOT / "data/scenes" / scene, "--json"]
+    if options.preset:
+        command += ["--preset", options.preset]
     for setting in (*settings, f"cohesive.mode_I.initiation_toughness={options.initiation} J/m^2",
                     f"cohesive.mode_I.bridging_toughness={options.bridging} J/m^2"):
         command += ["--set", setting]
