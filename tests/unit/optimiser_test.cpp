@@ -271,21 +271,39 @@ forward::CutResult two_branches(const forward::Scene& scene) {
   return result;
 }
 
+/// Everything that a model of the synthetic cut needs, and the point that made its curve.
+struct Modelled {
+  Modelled(const inverse::Job& read, const std::filesystem::path& file,
+           const inverse::Simulator& simulator = synthetic_cut)
+      : job(read),
+        space(job),
+        misfit(job, space),
+        journal(file),
+        database(journal, "test", simulator, 2),
+        objective(job, space, misfit, database, 1000),
+        point(space.coordinate(0, 60), space.coordinate(1, 2), space.coordinate(2, 0.3)) {}
+
+  inverse::LocalModel about(const Eigen::VectorXd& there) {
+    return inverse::LocalModel::by_differences(objective, objective.evaluate(there));
+  }
+
+  inverse::Job job;
+  inverse::ParameterSpace space;
+  inverse::Misfit misfit;
+  inverse::Journal journal;
+  inverse::RunDatabase database;
+  inverse::Objective objective;
+  Eigen::Vector3d point;
+};
+
 TEST(LocalModel, NeverDifferencesAcrossABranch) {
   const TemporaryFolder folder;
-  const inverse::Job job = write_job(folder);
-  const inverse::ParameterSpace space(job);
-  inverse::Misfit misfit(job, space);
-  inverse::Journal journal(folder / "journal.jsonl");
-  inverse::RunDatabase database(journal, "test", two_branches, 2);
-  inverse::Objective objective(job, space, misfit, database, 1000);
-  Eigen::VectorXd point(3);
-  point << space.coordinate(0, 60), space.coordinate(1, 2), space.coordinate(2, 0.3);
-  const auto model = inverse::LocalModel::by_differences(objective, objective.evaluate(point));
+  Modelled cut(write_job(folder), folder / "journal.jsonl", two_branches);
+  const auto model = cut.about(cut.point);
   EXPECT_EQ(inverse::count(model.known()), 4u);
   EXPECT_EQ(inverse::count(model.at_jump()), 4u) << "every cut jumps at 61 MPa";
   // The step of 4 % upwards crosses to the other branch; the slope must be that of this side, d ln F_c < d ln sigma_y.
-  Eigen::VectorXd moved = point;
+  Eigen::VectorXd moved = cut.point;
   moved[0] -= 0.02;
   const double change = std::log(model.predict(moved)(3, 0) / model.base().simulated(3, 0));
   EXPECT_LT(change, 0);
@@ -303,15 +321,8 @@ TEST(LocalModel, ShrinksTheStepUntilTheBranchStays) {
     }
     return result;
   };
-  const inverse::Job job = write_job(folder);
-  const inverse::ParameterSpace space(job);
-  inverse::Misfit misfit(job, space);
-  inverse::Journal journal(folder / "journal.jsonl");
-  inverse::RunDatabase database(journal, "test", island, 2);
-  inverse::Objective objective(job, space, misfit, database, 1000);
-  Eigen::VectorXd point(3);
-  point << space.coordinate(0, 60), space.coordinate(1, 2), space.coordinate(2, 0.3);
-  const auto model = inverse::LocalModel::by_differences(objective, objective.evaluate(point));
+  Modelled cut(write_job(folder), folder / "journal.jsonl", island);
+  const auto model = cut.about(cut.point);
   EXPECT_EQ(inverse::count(model.known()), 4u);
   EXPECT_GT(model.slopes(0)(3, 0), 0.5);
   EXPECT_LT(model.slopes(0)(3, 0), 1);
@@ -322,16 +333,9 @@ TEST(LocalModel, CentralDifferencesHaveNoErrorOfFirstOrder) {
   const auto slope = [&](bool central, double step) {
     const std::string text =
         std::string(job_text) + fmt::format("[optimiser]\nstep = {}\ncentral = {}\nnoise = 1e-7\n", step, central);
-    const inverse::Job job = write_job(folder, text);
-    const inverse::ParameterSpace space(job);
-    inverse::Misfit misfit(job, space);
-    inverse::Journal journal(folder / fmt::format("{}{}.jsonl", central, step));
-    inverse::RunDatabase database(journal, "test", synthetic_cut, 2);
-    inverse::Objective objective(job, space, misfit, database, 1000);
-    Eigen::VectorXd point(3);
-    point << space.coordinate(0, 60), space.coordinate(1, 2), space.coordinate(2, 0.3);
-    const auto model = inverse::LocalModel::by_differences(objective, objective.evaluate(point));
-    EXPECT_EQ(database.runs(), central ? 4u + 24u : 4u + 12u);
+    Modelled cut(write_job(folder, text), folder / fmt::format("{}{}.jsonl", central, step));
+    const auto model = cut.about(cut.point);
+    EXPECT_EQ(cut.database.runs(), central ? 4u + 24u : 4u + 12u);
     return model.slopes(0)(3, 0);
   };
   const double exact = slope(true, 1e-4);
@@ -340,55 +344,39 @@ TEST(LocalModel, CentralDifferencesHaveNoErrorOfFirstOrder) {
 
 TEST(LocalModel, IsSureNearItsDifferencesAndTheyCostNoMoreRuns) {
   const TemporaryFolder folder;
-  const inverse::Job job = write_job(folder);
-  const inverse::ParameterSpace space(job);
-  inverse::Misfit misfit(job, space);
-  inverse::Journal journal(folder / "journal.jsonl");
-  inverse::RunDatabase database(journal, "test", synthetic_cut, 2);
-  inverse::Objective objective(job, space, misfit, database, 1000);
-  Eigen::VectorXd point(3);
-  point << space.coordinate(0, 60), space.coordinate(1, 2), space.coordinate(2, 0.3);
-  auto model = inverse::LocalModel(objective.evaluate(point), objective.choice());
-  EXPECT_FALSE(model.is_sure(objective));
-  model.difference(objective);
-  EXPECT_TRUE(model.is_sure(objective));
-  EXPECT_EQ(database.runs(), 4u + 12u);
+  Modelled cut(write_job(folder), folder / "journal.jsonl");
+  auto model = inverse::LocalModel(cut.objective.evaluate(cut.point), cut.objective.choice());
+  EXPECT_FALSE(model.is_sure(cut.objective));
+  model.difference(cut.objective);
+  EXPECT_TRUE(model.is_sure(cut.objective));
+  EXPECT_EQ(cut.database.runs(), 4u + 12u);
 
-  const auto slope_at = [&](const Eigen::VectorXd& there) {
-    return inverse::LocalModel::by_differences(objective, objective.evaluate(there)).slopes(0)(3, 0);
-  };
-  const inverse::Evaluation near = objective.evaluate(point + Eigen::Vector3d(0.003, 0.003, -0.003));
-  const inverse::Evaluation far = objective.evaluate(point + Eigen::Vector3d(0.5, -0.8, 0.7));
+  const auto slope_at = [&](const Eigen::VectorXd& there) { return cut.about(there).slopes(0)(3, 0); };
+  const inverse::Evaluation near = cut.objective.evaluate(cut.point + Eigen::Vector3d(0.003, 0.003, -0.003));
+  const inverse::Evaluation far = cut.objective.evaluate(cut.point + Eigen::Vector3d(0.5, -0.8, 0.7));
   model.move_to(near);
-  EXPECT_TRUE(model.is_sure(objective));
+  EXPECT_TRUE(model.is_sure(cut.objective));
   EXPECT_NEAR(model.slopes(0)(3, 0), slope_at(near.point), 0.01);
   model.move_to(far);
-  EXPECT_FALSE(model.is_sure(objective)) << "curvature may have turned the slopes by then";
-  const std::size_t before = database.runs();
-  model.difference(objective);
-  EXPECT_TRUE(model.is_sure(objective));
-  EXPECT_LE(database.runs(), before + 12);
+  EXPECT_FALSE(model.is_sure(cut.objective)) << "curvature may have turned the slopes by then";
+  const std::size_t before = cut.database.runs();
+  model.difference(cut.objective);
+  EXPECT_TRUE(model.is_sure(cut.objective));
+  EXPECT_LE(cut.database.runs(), before + 12);
   EXPECT_NEAR(model.slopes(0)(3, 0), slope_at(far.point), 0.02);
 }
 
 TEST(LocalModel, GoesOnStraightBeyondItsReach) {
   const TemporaryFolder folder;
-  const inverse::Job job = write_job(folder);
-  const inverse::ParameterSpace space(job);
-  inverse::Misfit misfit(job, space);
-  inverse::Journal journal(folder / "journal.jsonl");
-  inverse::RunDatabase database(journal, "test", synthetic_cut, 2);
-  inverse::Objective objective(job, space, misfit, database, 1000);
-  Eigen::VectorXd point(3);
-  point << space.coordinate(0, 60), space.coordinate(1, 2), space.coordinate(2, 0.3);
-  auto model = inverse::LocalModel::by_differences(objective, objective.evaluate(point));
+  Modelled cut(write_job(folder), folder / "journal.jsonl");
+  auto model = cut.about(cut.point);
   for (const double step : {-0.4, -0.2, 0.2, 0.4}) {
-    Eigen::VectorXd there = point;
+    Eigen::VectorXd there = cut.point;
     there[1] += step;
-    model.learn(objective.evaluate(there));
+    model.learn(cut.objective.evaluate(there));
   }
   const auto logarithm = [&](double step) {
-    Eigen::VectorXd there = point;
+    Eigen::VectorXd there = cut.point;
     there[1] += step;
     return std::log(model.predict(there)(0, 0));
   };
