@@ -35,7 +35,7 @@ struct NoiseAudit {
 /// space (ecnoise), two cuts whose crack starts a third and two thirds of a cell of a four-cell chip farther on, so
 /// that particles, grid and averaging window meet differently, and one wide second difference. From them the step h
 /// = 1.68 sqrt(noise/|f''|) of a one-sided difference (More & Wild, ACM Trans. Math. Softw. 38 (2012) 19), kept within
-/// 0.02 and 0.15, since below the slopes' own drift hides and above a log-linear model ends; and the noise that a gain
+/// 0.02 and 0.15, since below the slopes' own drift hides and above curvature takes over; and the noise that a gain
 /// has to exceed. Throws BudgetSpent.
 NoiseAudit audit_noise(Objective& objective, const Evaluation& base);
 
