@@ -7,6 +7,7 @@
 
 #include "forward/bodies/measures.hpp"
 #include "forward/bodies/step.hpp"
+#include "forward/bodies/totals.hpp"
 
 namespace kerf::forward::bodies {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "forward/bodies/step.hpp"
+#include "forward/bodies/strain.hpp"
 #include "forward/mpm/stencil.hpp"
 
 namespace kerf::forward::bodies {

@@ -15,7 +15,7 @@ namespace kerf::forward::bodies {
 /// All points move with S v. What a transfer loses of the kinetic energy that FLIP would have left is booked as
 /// damping.
 ///
-/// A transfer is a struct like these, one line in `Transfer`, and its lines in bodies/step.cpp.
+/// A transfer is a struct like these, one line in `Transfer`, and its lines in bodies/advance.cpp.
 struct Flip {
   static constexpr const char* name = "FLIP";
   static constexpr bool is_affine = false, filters = false;

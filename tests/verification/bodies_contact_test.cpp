@@ -8,6 +8,7 @@
 #include "forward/bodies/contact.hpp"
 #include "forward/bodies/run.hpp"
 #include "forward/bodies/step.hpp"
+#include "forward/bodies/totals.hpp"
 #include "tests/shipped_scene.hpp"
 #include "tests/verification/bodies_result.hpp"
 

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "forward/bodies/step.hpp"
+#include "forward/bodies/totals.hpp"
 #include "tests/shipped_scene.hpp"
 #include "tests/verification/bodies_result.hpp"
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "forward/bodies/step.hpp"
+#include "forward/bodies/totals.hpp"
 
 /// Problems of elastodynamics whose answers are known, for whatever options of the solver.
 namespace kerf::forward::bodies {
