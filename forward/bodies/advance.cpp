@@ -29,8 +29,8 @@ std::array<Lanes, 4> affine_part(const Grid& grid, const StencilOf<Shape>& momen
   return C;
 }
 
-/// Gives the points their gradients; returns the energy per mass that they would have had with the changes alone, less
-/// what they have.
+/// Gives the points their gradients; returns the work per mass of what changes them beside the forces, see
+/// `advance`.
 template <class Shape>
 Lanes take_affine(const Grid& grid, StencilOf<Shape> stencil, const VelocityField& field, Points::Affine& to,
                   std::size_t first) {
@@ -38,16 +38,17 @@ Lanes take_affine(const Grid& grid, StencilOf<Shape> stencil, const VelocityFiel
   const std::array<Lanes, 4> old = affine_part(grid, stencil, spread, field.velocity);
   const std::array<Lanes, 4> change = affine_part(grid, stencil, spread, field.change);
   const std::array<std::vector<double>*, 4> values{&to.xx, &to.xy, &to.yx, &to.yy};
-  std::array<Lanes, 4> before, now;
+  std::array<Lanes, 4> taken, sum;
   for (std::size_t k = 0; k < 4; ++k) {
-    before[k] = load(&(*values[k])[first]) + change[k];
-    now[k] = old[k] + change[k];
-    store(&(*values[k])[first], now[k]);
+    const Lanes before = load(&(*values[k])[first]), now = old[k] + change[k];
+    taken[k] = before + change[k] - now;
+    sum[k] = before + now;
+    store(&(*values[k])[first], now);
   }
   const Lanes spread_x = grid.cell_x * grid.cell_x * spread[0], spread_y = grid.cell_y * grid.cell_y * spread[1];
   store(&to.spread_x[first], spread_x);
   store(&to.spread_y[first], spread_y);
-  return affine_energy(before, spread_x, spread_y) - affine_energy(now, spread_x, spread_y);
+  return affine_energy(taken, sum, spread_x, spread_y);
 }
 
 template <class Transfer, class Shape>
@@ -66,7 +67,8 @@ void move_points(State& state, const Scene& scene, Body& body, const Shape& shap
     const auto [old_x, old_y] = stencil.sum(body.field.velocity.data());
     const auto [change_x, change_y] = stencil.sum(body.field.change.data());
     const Lanes move_x = old_x + change_x, move_y = old_y + change_y;
-    Lanes vx = load(&p.velocity_x[first]) + change_x, vy = load(&p.velocity_y[first]) + change_y;
+    const Lanes before_x = load(&p.velocity_x[first]), before_y = load(&p.velocity_y[first]);
+    Lanes vx = before_x + change_x, vy = before_y + change_y;
     if (!is_flip || rate > 0.0) {
       const Lanes flip_x = vx, flip_y = vy, mass = density * load(&p.volume[first]);
       if constexpr (is_flip) {
@@ -80,7 +82,7 @@ void move_points(State& state, const Scene& scene, Body& body, const Shape& shap
         vx = move_x;
         vy = move_y;
       }
-      lost += 0.5 * mass * (flip_x * flip_x + flip_y * flip_y - vx * vx - vy * vy);
+      lost += 0.5 * mass * ((flip_x - vx) * (before_x + vx) + (flip_y - vy) * (before_y + vy));
       if constexpr (Transfer::is_affine) lost += mass * take_affine(state.grid, stencil, body.field, p.affine, first);
     }
     store(&p.velocity_x[first], vx);

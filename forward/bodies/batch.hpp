@@ -68,9 +68,11 @@ inline double density_of(const Body& body) {
   return std::visit([](const auto& law) { return law.mass_density(); }, body.law);
 }
 
-/// Kinetic energy per mass of eight points whose velocity has the gradient C, row by row: 1/2 C D C^T.
-inline Lanes affine_energy(const std::array<Lanes, 4>& C, Lanes spread_x, Lanes spread_y) {
-  return 0.5 * ((C[0] * C[0] + C[2] * C[2]) * spread_x + (C[1] * C[1] + C[3] * C[3]) * spread_y);
+/// 1/2 A D B^T of eight points, of gradients row by row: with A = B = C the kinetic energy per mass of points whose
+/// velocity has the gradient C.
+inline Lanes affine_energy(const std::array<Lanes, 4>& A, const std::array<Lanes, 4>& B, Lanes spread_x,
+                           Lanes spread_y) {
+  return 0.5 * ((A[0] * B[0] + A[2] * B[2]) * spread_x + (A[1] * B[1] + A[3] * B[3]) * spread_y);
 }
 
 }  // namespace kerf::forward::bodies

@@ -28,16 +28,19 @@ void add_affine_momentum(const Grid& grid, StencilOf<Shape> stencil, const Point
   stencil.add_mass(field.mass.data(), mass);
 }
 
-/// Nodal velocities under the walls, of points' velocities that `velocity_of(stencil, first point)` tells.
+/// Nodal velocities under the walls, of points' velocities that `velocity_of(stencil, first point)` tells. Are all
+/// points where the grid is?
 template <bool is_affine, class Shape, class VelocityOf>
-void gather(State& state, const Scene& scene, const Shape& shape, Body& body, const VelocityOf& velocity_of) {
+bool gather(State& state, const Scene& scene, const Shape& shape, Body& body, const VelocityOf& velocity_of) {
   VelocityField& field = body.field;
   for (auto* values : {&field.mass, &field.momentum, &field.velocity}) std::fill(values->begin(), values->end(), 0.0);
   const Points& p = body.points;
   const std::vector<double>&x = p.kernel_x(frame_of(scene)), &y = p.kernel_y(frame_of(scene));
   const double density = density_of(body);
+  Lanes outside{};
   for (std::size_t i = 0; i < p.size(); i += lane_count) {
     const StencilOf<Shape> stencil(state.grid, load(&x[i]), load(&y[i]), shape);
+    outside = stencil.outside(outside);
     const Lanes mass = density * load(&p.volume[i]);
     if constexpr (is_affine) {
       add_affine_momentum(state.grid, stencil, p, i, mass, field);
@@ -50,6 +53,7 @@ void gather(State& state, const Scene& scene, const Shape& shape, Body& body, co
   for (std::size_t node = 0; node < state.grid.nodes(); ++node)
     for (std::size_t k = 2 * node; k < 2 * node + 2; ++k)
       field.velocity[k] = field.mass[node] > 0.0 ? field.momentum[k] / field.mass[node] : 0.0;
+  return !any(outside > 0.0);
 }
 
 }  // namespace
@@ -59,9 +63,12 @@ void gather_momentum(State& state, const Scene& scene) {
     for (Body& body : state.bodies) {
       for (auto* values : {&body.field.change, &body.field.force}) std::fill(values->begin(), values->end(), 0.0);
       const Points& p = body.points;
-      gather<std::decay_t<decltype(transfer)>::is_affine>(state, scene, shape, body, [&](const auto&, std::size_t i) {
-        return std::array<Lanes, 2>{load(&p.velocity_x[i]), load(&p.velocity_y[i])};
-      });
+      const bool sound = gather<std::decay_t<decltype(transfer)>::is_affine>(
+          state, scene, shape, body, [&](const auto&, std::size_t i) {
+            return std::array<Lanes, 2>{load(&p.velocity_x[i]), load(&p.velocity_y[i])};
+          });
+      if (!sound && state.breakdown.empty())
+        state.breakdown = "a body left the box, or its velocity is no longer a number";
     }
   };
   std::visit(gather_with, scene.numerics.shape, scene.numerics.transfer);

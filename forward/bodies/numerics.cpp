@@ -80,6 +80,13 @@ Numerics read_numerics(const Values* values, int particles_per_cell_side, bool h
            fmt::format("= \"{}\" regathers velocities where the points were, which a grid in the current "
                        "configuration no longer knows (allowed: USF, USL)",
                        update));
+  if (numerics.frame == Frame::current && std::holds_alternative<Linear>(numerics.shape) &&
+      (std::holds_alternative<Apic>(numerics.transfer) || numerics.stress_update == StressUpdate::last))
+    refuse(
+        "shape",
+        fmt::format("= \"linear\" gives a node that a point has just reached all of its force and hardly any mass, and "
+                    "{} sees how fast that node is (allowed: spline, uGIMP; or FLIP, PIC, XPIC with USF)",
+                    std::holds_alternative<Apic>(numerics.transfer) ? "APIC" : "USL"));
   if (!has_contact) return numerics;
   if (numerics.frame == Frame::reference)
     refuse("frame", "= \"reference\", but [contact] needs the current configuration");

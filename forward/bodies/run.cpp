@@ -64,8 +64,10 @@ class Recorder {
   bool is_due(const State& state, double spacing) const {
     return std::abs(state.piston.position - last_length_) >= spacing;
   }
-  void read(const State& state, std::size_t stroke, std::vector<Reading>& history) {
+  /// Reads nothing from energies that are no longer numbers; false then.
+  bool read(const State& state, std::size_t stroke, std::vector<Reading>& history) {
     const Totals now = totals(state);
+    if (!std::isfinite(now.kinetic + now.internal + state.damping + state.piston.work + state.time)) return false;
     history.push_back(
         {.stroke = stroke,
          .time = state.time,
@@ -96,6 +98,7 @@ class Recorder {
     last_length_ = state.piston.position;
     impulse_ = duration_ = 0.0;
     rigid_impulse_ = {0, 0};
+    return true;
   }
   const Totals& first() const { return first_; }
 
@@ -118,6 +121,15 @@ std::vector<BodiesResult::Pressure> pressed_nodes(const State& state) {
                          .y = grid.origin_y + j * grid.cell_y,
                          .force = impulse / (state.time - pressed.since)});
   return nodes;
+}
+
+/// What may have made a run break down.
+const char* remedy(const Scene& scene) {
+  if (std::holds_alternative<Linear>(scene.numerics.shape) &&
+      (std::holds_alternative<Apic>(scene.numerics.transfer) || scene.numerics.stress_update == StressUpdate::last))
+    return "; linear shape functions give a node that points hardly reach all of their force and hardly any mass: take "
+           "spline or uGIMP";
+  return "";
 }
 
 /// Refuses what no reading should be taken from.
@@ -178,7 +190,10 @@ BodiesResult run(const Scene& scene, const std::function<bool(std::size_t, doubl
       const bool over = end.reached(state);
       if (!over && !recorder.is_due(state, spacing) && state.time < next_in_time + wait) continue;
       next_in_time = state.time;
-      recorder.read(state, s, result.history);
+      if (!recorder.read(state, s, result.history)) {
+        if (state.breakdown.empty()) state.breakdown = "its energy is no longer a number";
+        break;
+      }
       if (over) {
         result.stroke_ends.push_back(result.history.size() - 1);
         break;
@@ -192,10 +207,12 @@ BodiesResult run(const Scene& scene, const std::function<bool(std::size_t, doubl
       }
     }
   }
-  if (!state.breakdown.empty())
-    result.refusals.push_back(fmt::format("broke down after {:.3g} ms: {}", 1e3 * state.time, state.breakdown));
   result.pressed = pressed_nodes(state);
-  judge(result, scene);
+  if (state.breakdown.empty())
+    judge(result, scene);
+  else
+    result.refusals.push_back(
+        fmt::format("broke down after {:.3g} ms: {}{}", 1e3 * state.time, state.breakdown, remedy(scene)));
   result.accepted = result.refusals.empty();
   result.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return result;

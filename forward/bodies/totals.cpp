@@ -12,7 +12,7 @@ void add_affine_part(const Points& p, std::size_t first, Lanes mass, Frame frame
   const std::array<Lanes, 4> C{load(&p.affine.xx[first]), load(&p.affine.xy[first]), load(&p.affine.yx[first]),
                                load(&p.affine.yy[first])};
   const Lanes spread_x = load(&p.affine.spread_x[first]), spread_y = load(&p.affine.spread_y[first]);
-  all.kinetic += sum(mass * affine_energy(C, spread_x, spread_y));
+  all.kinetic += sum(mass * affine_energy(C, C, spread_x, spread_y));
   const Gradient F =
       frame == Frame::current ? Gradient{all_lanes(1.0), {}, {}, all_lanes(1.0)} : load_gradient(p, first);
   all.angular_momentum += sum(mass * ((F.xx * C[2] - F.yx * C[0]) * spread_x + (F.xy * C[3] - F.yy * C[1]) * spread_y));

@@ -12,8 +12,7 @@ namespace kerf::forward::bodies {
 ///     which
 ///              gives node i the velocity v_p + C_p (x_i - x_p)  (Jiang et al. 2015)
 ///     XPIC(m)  v_p = S v(m) of filtered velocities: effects/xpic.hpp
-/// All points move with S v. What a transfer loses of the kinetic energy that FLIP would have left is booked as
-/// damping.
+/// All points move with S v. What a transfer takes beside what FLIP would have left is booked as damping.
 ///
 /// A transfer is a struct like these, one line in `Transfer`, and its lines in bodies/advance.cpp.
 struct Flip {

@@ -82,6 +82,10 @@ TEST(BodiesScene, BadNumericsAreSaidWithTheirPlace) {
   EXPECT_THAT(gas("transfer = \"APIC\""), HasSubstr("leaves [pic_damping] nothing to do"));
   EXPECT_THAT(gas("frame = \"current\""), HasSubstr("holds the piston still"));
   EXPECT_THAT(gas("frame = \"current\"\nstress_update = \"MUSL\""), HasSubstr("allowed: USF, USL"));
+  for (const auto& [keys, who] :
+       {std::pair{"transfer = \"APIC\"", "APIC sees"}, {"stress_update = \"USL\"", "USL sees"}})
+    EXPECT_THAT(gas(std::string("frame = \"current\"\nshape = \"linear\"\n") + keys),
+                ::testing::AllOf(HasSubstr("hardly any mass"), HasSubstr(who)));
   EXPECT_THAT(complaint(shipped_text("interface_bar") + "\n[numerics]\nshape = \"linear\"\n"),
               HasSubstr("with an [interface] is \"spline\""));
   EXPECT_THAT(complaint(shipped_text("incline") + "\n[numerics]\nshape = \"uGIMP\"\n"),
