@@ -8,6 +8,7 @@
 #include "forward/bodies/shape.hpp"
 #include "tests/shipped_scene.hpp"
 #include "tests/verification/bodies_result.hpp"
+#include "tests/verification/bodies_trial.hpp"
 
 namespace kerf::forward::bodies {
 namespace {
@@ -75,6 +76,78 @@ TEST(BodiesInterface, LayersOfTwoMaterialsFollowReussAndVoigt) {
     std::printf("%d deg, 1 and 2 GPa: effective modulus off by %.1e\n", angle,
                 number(result, "effective_modulus_error"));
     EXPECT_LT(number(result, "effective_modulus_error"), tolerance) << angle;
+  }
+}
+
+/// Two bars of 10 mm, free at their far ends and joined by springs, fly apart and together. By symmetry each swings on
+/// springs 2D to a plane at rest: w = c k with k L tan(k L) = 2 D L/E.
+struct Swing {
+  double frequency_error;
+  double energy_kept, energy_swing;  ///< of all energy, the springs' included, over ten periods
+};
+Swing swing_on_springs(double D, double cell) {
+  constexpr double length = 10;
+  const double c = std::sqrt(trial_modulus / trial_density);
+  double low = 0, high = 0.5 * std::numbers::pi;
+  for (int k = 0; k < 60; ++k) {
+    const double middle = 0.5 * (low + high);
+    (middle * std::tan(middle) < 2 * D * length / trial_modulus ? low : high) = middle;
+  }
+  const double period = 2 * std::numbers::pi * length / (low * c);
+  const auto bar = [&](double left, double velocity) {
+    return fmt::format("left = \"{} mm\"\nwidth = \"{} mm\"\nvelocity_x = \"{} m/s\"", left, length, velocity);
+  };
+  const std::string one = trial_scene(24, 4 * cell, cell, "left = \"open\"", bar(2, -0.1), "");
+  const std::size_t body = one.find("[[body]]"), stroke = one.find("[[stroke]]");
+  std::string other = one.substr(body, stroke - body);
+  other.replace(other.find("left ="), std::string::npos, bar(12, 0.1) + "\n");
+  Trial trial(one.substr(0, stroke) + other + one.substr(stroke) +
+              fmt::format("[interface]\nnormal = \"{0} MPa/mm\"\ntangential = \"{0} MPa/mm\"\n", D));
+  const auto apart = [&] {
+    double sum = 0;
+    for (std::size_t b = 0; b < 2; ++b) {
+      const Points& p = trial.state.bodies[b].points;
+      for (std::size_t i = 0; i < p.size(); ++i) sum += (b == 0 ? -1 : 1) * p.volume[i] * (p.x[i] - p.reference_x[i]);
+    }
+    return sum;
+  };
+  constexpr int periods = 10;
+  std::vector<double> crossings, energy;
+  double before = 0;
+  while (trial.state.time < (periods + 0.75) * period) {
+    trial.step();
+    const double now = apart();
+    if (before > 0.0 && now <= 0.0) crossings.push_back(trial.state.time - trial.state.step * now / (now - before));
+    before = now;
+    const Totals all = totals(trial.state);
+    energy.push_back(all.kinetic + all.internal + trial.state.interface_energy);
+  }
+  if (crossings.size() < 2) return {.frequency_error = std::nan(""), .energy_kept = 0, .energy_swing = 1};
+  const std::size_t one_period = energy.size() * 4 / (4 * periods + 3);
+  const auto mean = [&](std::size_t first) {
+    double sum = 0;
+    for (std::size_t i = first; i < first + one_period; ++i) sum += energy[i];
+    return sum / static_cast<double>(one_period);
+  };
+  double most = 0;
+  for (const double e : energy) most = std::max(most, std::abs(e / mean(0) - 1));
+  const double found = (crossings.back() - crossings.front()) / static_cast<double>(crossings.size() - 1);
+  return {.frequency_error = period / found - 1,
+          .energy_kept = mean(energy.size() - one_period) / mean(0),
+          .energy_swing = most};
+}
+
+TEST(BodiesInterface, BarsSwingOnSpringsAtTheirFrequencyAndKeepTheirEnergy) {
+  for (const double D : {1.0, 100.0, 2000.0}) {  // the last E/cell
+    const Swing coarse = swing_on_springs(D, 1.0), fine = swing_on_springs(D, 0.5);
+    std::printf(
+        "D = %.0f MPa/mm: frequency off by %+.2e, %+.2e with cells of 1, 0.5 mm; energy kept %.5f, swings by %.1e\n", D,
+        coarse.frequency_error, fine.frequency_error, fine.energy_kept, fine.energy_swing);
+    // FLIP slows waves by (k h)^2/4, at most 1.5e-3 here.
+    EXPECT_LT(std::abs(fine.frequency_error), 2e-3) << D;
+    EXPECT_GT(std::log2(coarse.frequency_error / fine.frequency_error), 1.5) << D;
+    EXPECT_NEAR(fine.energy_kept, 1, 3e-4) << D;
+    EXPECT_LT(fine.energy_swing, 0.04) << D;
   }
 }
 
