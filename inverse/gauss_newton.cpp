@@ -100,7 +100,8 @@ class GaussNewton {
   void refuse(double step, double promise, const Evaluation& trial) {
     objective_.trace("trial refused", trial);
     radius_ = step / 4;
-    if (!model_.is_sure(objective_)) {
+    const bool worth_slopes = objective_.choice().confirm || promise > standard_error_squared;
+    if (worth_slopes && !model_.is_sure(objective_)) {
       radius_ = std::max(radius_, 2 * objective_.choice().step);
       return difference();
     }

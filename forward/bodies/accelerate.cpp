@@ -11,7 +11,7 @@ template <class Shape>
 void weigh_with(const Shape& shape, State& state, const Scene& scene) {
   for (Body& body : state.bodies) {
     const Points& p = body.points;
-    const std::vector<double>&x = p.kernel_x(frame_of(scene)), &y = p.kernel_y(frame_of(scene));
+    const Array &x = p.kernel_x(frame_of(scene)), &y = p.kernel_y(frame_of(scene));
     const double density = density_of(body);
     for (std::size_t first = 0; first < p.size(); first += lane_count) {
       const StencilOf<Shape> stencil(state.grid, load(&x[first]), load(&y[first]), shape);

@@ -12,7 +12,7 @@ namespace {
 /// C = D^-1 sum w_i v_i (x_i - x_p)^T, row by row, of a stencil that holds moments.
 template <class Shape>
 std::array<Lanes, 4> affine_part(const Grid& grid, const StencilOf<Shape>& moments, const std::array<Lanes, 2>& spread,
-                                 const std::vector<double>& nodal) {
+                                 const Array& nodal) {
   const auto [value, rise] = moments.value_and_rise(nodal.data());
   std::array<Lanes, 4> C{};
   for (std::size_t i = 0; i < 3; ++i)
@@ -37,7 +37,7 @@ Lanes take_affine(const Grid& grid, StencilOf<Shape> stencil, const VelocityFiel
   const std::array<Lanes, 2> spread = stencil.take_moments();
   const std::array<Lanes, 4> old = affine_part(grid, stencil, spread, field.velocity);
   const std::array<Lanes, 4> change = affine_part(grid, stencil, spread, field.change);
-  const std::array<std::vector<double>*, 4> values{&to.xx, &to.xy, &to.yx, &to.yy};
+  const std::array<Array*, 4> values{&to.xx, &to.xy, &to.yx, &to.yy};
   std::array<Lanes, 4> taken, sum;
   for (std::size_t k = 0; k < 4; ++k) {
     const Lanes before = load(&(*values[k])[first]), now = old[k] + change[k];
@@ -56,7 +56,7 @@ void move_points(State& state, const Scene& scene, Body& body, const Shape& shap
   constexpr bool is_flip = std::is_same_v<Transfer, Flip>;
   Points& p = body.points;
   const Frame frame = frame_of(scene);
-  const std::vector<double>&kernel_x = p.kernel_x(frame), &kernel_y = p.kernel_y(frame);
+  const Array &kernel_x = p.kernel_x(frame), &kernel_y = p.kernel_y(frame);
   const double dt = state.step;
   const double rate = scene.pic_damping ? 1.0 - std::exp(-scene.pic_damping->rate * scene.courant_number) : 0.0;
   const double density = density_of(body);

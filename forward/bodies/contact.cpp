@@ -286,7 +286,7 @@ void meet(State& state, const Scene& scene) {
   contact.pressed.impulse.resize(state.grid.nodes(), 0.0);
   if (friction_warms(scene)) {
     contact.heat.resize(deforming);
-    for (std::vector<double>& heat : contact.heat) heat.assign(state.grid.nodes(), 0.0);
+    for (Array& heat : contact.heat) heat.assign(state.grid.nodes(), 0.0);
   }
   exchange_impulses(state, scene);
   for (Body& body : state.bodies)
@@ -315,7 +315,7 @@ void warm_by_friction(State& state, const Scene& scene) {
     if (!body.is_thermal()) continue;
     const double density = std::visit([](const auto& law) { return law.mass_density(); }, body.law);
     const double specific_heat = laws::heat_capacity(body.law) / density;
-    std::vector<double>& rise = state.contact.heat[b];
+    Array& rise = state.contact.heat[b];
     for (std::size_t node = 0; node < state.grid.nodes(); ++node)
       if (rise[node] != 0.0) rise[node] /= specific_heat * body.field.mass[node];
     for (const std::size_t normal : {0u, 1u})

@@ -35,7 +35,7 @@ bool gather(State& state, const Scene& scene, const Shape& shape, Body& body, co
   VelocityField& field = body.field;
   for (auto* values : {&field.mass, &field.momentum, &field.velocity}) std::fill(values->begin(), values->end(), 0.0);
   const Points& p = body.points;
-  const std::vector<double>&x = p.kernel_x(frame_of(scene)), &y = p.kernel_y(frame_of(scene));
+  const Array &x = p.kernel_x(frame_of(scene)), &y = p.kernel_y(frame_of(scene));
   const double density = density_of(body);
   Lanes outside{};
   for (std::size_t i = 0; i < p.size(); i += lane_count) {
@@ -76,7 +76,7 @@ void gather_momentum(State& state, const Scene& scene) {
 
 void filter_velocity(State& state, const Scene& scene, const std::function<void(State&)>& share) {
   const int order = std::get<Xpic>(scene.numerics.transfer).order;
-  std::vector<std::vector<double>> velocity, term;
+  std::vector<Array> velocity, term;
   for (Body& body : state.bodies) {
     mirror_velocity(state, scene, body.field);
     mirror_change(state, scene, body.field);

@@ -119,7 +119,7 @@ void Joint::share_velocity(State& state) {
 /// Calls visit(node, component, its difference of these values, reduced mass) for what the springs join, and gives both
 /// bodies what it returns in place of that difference.
 template <class Visit>
-void Joint::each_difference(State& state, std::vector<double> VelocityField::*values, Visit&& visit) {
+void Joint::each_difference(State& state, Array VelocityField::*values, Visit&& visit) {
   VelocityField &a = state.bodies[0].field, &b = state.bodies[1].field;
   for (Node& at : nodes_) {
     const double mass_a = a.mass[at.node], mass_b = b.mass[at.node];

@@ -41,7 +41,7 @@ class Joint {
   };
   void find_nodes(const State& state);
   template <class Visit>
-  void each_difference(State& state, std::vector<double> VelocityField::*values, Visit&& visit);
+  void each_difference(State& state, Array VelocityField::*values, Visit&& visit);
   void slow_parting(State& state);
   double stiffness(std::size_t component, double jump) const;
 

@@ -15,20 +15,20 @@ inline Frame frame_of(const Scene& scene) {
 /// Material points of one body, structure of arrays, padded to whole batches with points of no volume. Units as in a
 /// cut: mm, mm/s, MPa; volume is the reference volume per unit width, mm^2.
 struct Points {
-  std::vector<double> reference_x, reference_y, x, y, velocity_x, velocity_y, volume;
-  std::vector<double> F_xx, F_xy, F_yx, F_yy;                      ///< deformation gradient dx/dX
-  std::vector<double> stress_xx, stress_yy, stress_zz, stress_xy;  ///< Kirchhoff stress
-  std::vector<std::vector<double>> memory;                         ///< what the law keeps, see laws::Memory
-  std::vector<double> temperature;                                 ///< K; only of thermal laws
+  Array reference_x, reference_y, x, y, velocity_x, velocity_y, volume;
+  Array F_xx, F_xy, F_yx, F_yy;                      ///< deformation gradient dx/dX
+  Array stress_xx, stress_yy, stress_zz, stress_xy;  ///< Kirchhoff stress
+  std::vector<Array> memory;                         ///< what the law keeps, see laws::Memory
+  Array temperature;                                 ///< K; only of thermal laws
   /// Of APIC alone: velocity gradient in the grid's configuration, 1/s, and the D of bodies/transfer.hpp, mm^2.
   struct Affine {
-    std::vector<double> xx, xy, yx, yy, spread_x, spread_y;
+    Array xx, xy, yx, yy, spread_x, spread_y;
     static constexpr std::size_t numbers = 6;
   } affine;
   std::size_t size() const { return x.size(); }
   /// Where kernels are taken.
-  const std::vector<double>& kernel_x(Frame frame) const { return frame == Frame::current ? x : reference_x; }
-  const std::vector<double>& kernel_y(Frame frame) const { return frame == Frame::current ? y : reference_y; }
+  const Array& kernel_x(Frame frame) const { return frame == Frame::current ? x : reference_x; }
+  const Array& kernel_y(Frame frame) const { return frame == Frame::current ? y : reference_y; }
   static constexpr std::size_t mechanical_numbers = 15;  ///< kept for every point, before memory and temperature
 };
 
@@ -54,11 +54,11 @@ struct HeatBook {
 /// A body as the nodes see its place: volume, its gradient, and volume times the mean of what [contact] overlap looks
 /// at, seen from the node: positions or displacements. Vectors are interleaved (x, y).
 struct Presence {
-  std::vector<double> volume, gradient, moment;
+  Array volume, gradient, moment;
 };
 
 struct RigidBody {
-  std::vector<double> x, y, volume;  ///< as of Points
+  Array x, y, volume;  ///< as of Points
   double velocity_x = 0, velocity_y = 0;
   double moved_x = 0, moved_y = 0;  ///< since the start, mm
   double force_x = 0, force_y = 0;  ///< on the bodies that it touches in this step, N/mm
@@ -73,17 +73,17 @@ struct Touch {
 /// Everything about bodies in contact; empty without. Energies since the start, N mm/mm.
 struct ContactState {
   std::vector<RigidBody> rigids;
-  std::vector<Presence> presence;             ///< of bodies, then of rigid ones
-  std::vector<Touch> touches;                 ///< in this step
-  std::vector<std::vector<double>> velocity;  ///< of every body's nodes, as gathered
-  double rigid_work = 0;                      ///< of the rigid bodies on the others
+  std::vector<Presence> presence;  ///< of bodies, then of rigid ones
+  std::vector<Touch> touches;      ///< in this step
+  std::vector<Array> velocity;     ///< of every body's nodes, as gathered
+  double rigid_work = 0;           ///< of the rigid bodies on the others
   double friction_heat = 0;
-  std::vector<std::vector<double>> heat;  ///< of friction in this step, at every body's nodes; empty unless it warms
-  double warmed = 0;                      ///< part of the heat of friction that has warmed bodies
-  double impact = 0;                      ///< lost where approaching surfaces take one velocity
+  std::vector<Array> heat;  ///< of friction in this step, at every body's nodes; empty unless it warms
+  double warmed = 0;        ///< part of the heat of friction that has warmed bodies
+  double impact = 0;        ///< lost where approaching surfaces take one velocity
   struct Pressed {
-    std::vector<double> impulse;  ///< normal, at every node, N s/mm; between deforming bodies where there are several
-    double since = 0;             ///< s
+    Array impulse;     ///< normal, at every node, N s/mm; between deforming bodies where there are several
+    double since = 0;  ///< s
   } pressed;
 };
 

@@ -49,7 +49,7 @@ template <Frame frame, class Shape>
 /// Deformation and stress after a time `step` with these nodal velocities; and, if asked, the internal forces.
 template <Frame frame, bool with_forces, class Shape, class Law>
 void strain_points(State& state, Body& body, const Law& law, const Stroke& stroke, const Shape& shape,
-                   const std::vector<double>& velocity, double step) {
+                   const Array& velocity, double step) {
   Points& p = body.points;
   const Grid& grid = state.grid;
   const double strain_x = step * grid.inverse_cell_x, strain_y = step * grid.inverse_cell_y;
@@ -96,7 +96,7 @@ void strain_points(State& state, Body& body, const Law& law, const Stroke& strok
 template <bool with_forces, class VelocityOf>
 void strain_bodies(State& state, const Scene& scene, const Stroke& stroke, double step, VelocityOf&& velocity_of) {
   for (Body& body : state.bodies) {
-    const std::vector<double>& velocity = velocity_of(body.field);
+    const Array& velocity = velocity_of(body.field);
     const auto strain_with = [&](const auto& shape, const auto& law) {
       if (frame_of(scene) == Frame::current)
         strain_points<Frame::current, with_forces>(state, body, law, stroke, shape, velocity, step);
@@ -122,7 +122,7 @@ void push_nodes(const State& state, Body& body, const Shape& shape) {
 }  // namespace
 
 void strain(State& state, const Scene& scene, const Stroke& stroke, double step, bool with_forces) {
-  const auto gathered = [&](VelocityField& field) -> const std::vector<double>& {
+  const auto gathered = [&](VelocityField& field) -> const Array& {
     mirror_velocity(state, scene, field);
     return field.velocity;
   };
@@ -133,7 +133,7 @@ void strain(State& state, const Scene& scene, const Stroke& stroke, double step,
 }
 
 void strain_last(State& state, const Scene& scene, const Stroke& stroke) {
-  strain_bodies<false>(state, scene, stroke, state.step, [&](VelocityField& field) -> const std::vector<double>& {
+  strain_bodies<false>(state, scene, stroke, state.step, [&](VelocityField& field) -> const Array& {
     mirror_change(state, scene, field);
     field.filtered = field.velocity;
     for (std::size_t k = 0; k < field.filtered.size(); ++k) field.filtered[k] += field.change[k];

@@ -7,7 +7,7 @@ namespace kerf::forward {
 void filter_velocity(State& state, int order) {
   const Particles& p = state.particles;
   const Grid& grid = state.grid;
-  std::vector<double> term, mean, mass;
+  Array term, mean, mass;
   for (std::size_t side = 0; side < 2; ++side) {
     VelocityField& field = state.grid.side[side];
     term.resize(field.velocity.size());

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "forward/mpm/array.hpp"
 #include "forward/scene/scene.hpp"
 #include "forward/scene/tool_face.hpp"
 
@@ -17,16 +18,16 @@ enum Side { below = 0, above = 1 };
 /// Material points, structure of arrays, sorted by (side, cell row, cell); each side is padded to whole batches of
 /// `lane_count` with points of zero volume. Units mm, mm/s, MPa; volume is the reference volume per unit width, mm^2.
 struct Particles {
-  std::vector<double> x, y, velocity_x, velocity_y;
-  std::vector<double> stress_xx, stress_yy, stress_zz, stress_xy;  ///< Kirchhoff stress
-  std::vector<double> plastic_strain, volume;
-  std::vector<double> axis_x, axis_y;         ///< direction of the grain; only for materials that have one
-  std::vector<double> conducted;              ///< temperature that conduction has added, K; only with a conductivity
+  Array x, y, velocity_x, velocity_y;
+  Array stress_xx, stress_yy, stress_zz, stress_xy;  ///< Kirchhoff stress
+  Array plastic_strain, volume;
+  Array axis_x, axis_y;                       ///< direction of the grain; only for materials that have one
+  Array conducted;                            ///< temperature that conduction has added, K; only with a conductivity
   std::array<std::size_t, 3> begin{0, 0, 0};  ///< side s owns [begin[s], begin[s + 1])
   bool has_axes = false, conducts = false;
 
   struct Field {
-    std::vector<double>* values;
+    Array* values;
     const char* name;
     double at_rest;  ///< of material that nothing has happened to
   };
@@ -90,9 +91,9 @@ struct Particles {
 
 /// One side's nodes, row-major; vectors are interleaved (x, y), so that three nodes of a row lie side by side.
 struct VelocityField {
-  std::vector<double> mass, momentum, velocity, force;
-  std::vector<double> change;    ///< of the velocity in this step
-  std::vector<double> filtered;  ///< what XPIC blends towards; empty without it
+  Array mass, momentum, velocity, force;
+  Array change;    ///< of the velocity in this step
+  Array filtered;  ///< what XPIC blends towards; empty without it
   struct Span {
     int begin = 0, end = 0;  ///< columns, multiples of `lane_count`
   };

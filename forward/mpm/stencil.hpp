@@ -179,6 +179,16 @@ struct StencilOf {
     }
   }
 
+  /// Asks for the nodes of a field (of so many components) that the eight particles' walk along their rows meets next
+  /// and for the first time: those of the third row, a cache line ahead. Large grids do not stay in the nearer caches,
+  /// and eight walks at once are more than the processor follows by itself.
+  template <std::ptrdiff_t components>
+  [[gnu::always_inline]] void prefetch(const double* nodal) const {
+    constexpr std::ptrdiff_t line = 8;
+#pragma GCC unroll 8
+    for (std::size_t p = 0; p < lane_count; ++p) __builtin_prefetch(nodal + components * (2 * stride + node[p]) + line);
+  }
+
  private:
   static LaneInts inside(Lanes at, int count) {
     const LaneInts first = __builtin_convertvector(at - 0.5, LaneInts);

@@ -12,7 +12,15 @@ namespace {
 /// that wait for one another; the processor works on several chains at once only where they stand close together.
 constexpr std::size_t together = 4;
 
-void clear(std::vector<double>& values) {
+/// Asks for what a pass reads of the particles a few microseconds before it does: the processor foresees so many arrays
+/// only within a page.
+template <class... Arrays>
+[[gnu::always_inline]] inline void prefetch(std::size_t first, const Arrays&... arrays) {
+  constexpr std::size_t ahead = 16 * lane_count;
+  (__builtin_prefetch(arrays.data() + first + ahead), ...);
+}
+
+void clear(Array& values) {
   std::fill(values.begin(), values.end(), 0.0);
 }
 
@@ -91,7 +99,13 @@ void stress_particles(State& state, const Law& material) {
       std::array<laws::StrainIncrement, together> strains;
       for (std::size_t b = 0; b < batches; ++b) {
         const std::size_t first = begin + b * lane_count;
+        prefetch(first, p.x, p.y, p.stress_xx, p.stress_yy, p.stress_zz, p.stress_xy, p.plastic_strain, p.volume);
+        if constexpr (Law::has_axes) prefetch(first, p.axis_x, p.axis_y);
         const Stencil& stencil = *std::construct_at(&stencils[b], grid, load(&p.x[first]), load(&p.y[first]));
+        if (b == 0) {
+          stencil.prefetch<2>(field.velocity.data());
+          stencil.prefetch<2>(field.force.data());
+        }
         const auto [value, rise] = stencil.value_and_rise(field.velocity.data());
         Lanes xx{}, xy{}, yx{}, yy{};
         for (std::size_t i = 0; i < 3; ++i) {
@@ -174,8 +188,15 @@ void advance_all(State& state, double rate) {
       const std::size_t batches = std::min(together, (end - begin) / lane_count);
       for (std::size_t b = 0; b < batches; ++b) {
         const std::size_t first = begin + b * lane_count;
+        prefetch(first, p.x, p.y, p.velocity_x, p.velocity_y, p.volume);
         const Lanes x = load(&p.x[first]), y = load(&p.y[first]), mass = load(&p.volume[first]) * state.density;
         const Stencil stencil(grid, x, y);
+        if (b == 0) {
+          stencil.prefetch<2>(field.velocity.data());
+          stencil.prefetch<2>(field.change.data());
+          stencil.prefetch<2>(field.momentum.data());
+          stencil.prefetch<1>(field.mass.data());
+        }
         const auto [old_x, old_y] = stencil.sum(field.velocity.data());
         const auto [change_x, change_y] = stencil.sum(field.change.data());
         const Lanes move_x = old_x + change_x, move_y = old_y + change_y;

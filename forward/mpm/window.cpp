@@ -224,7 +224,7 @@ void sort_into_batches(State& state, const Scene& scene, const std::vector<Side>
     source[first + rank % batches * lane_count + rank / batches] = i;
   }
   for (const Particles::Field& field : p.fields()) {
-    std::vector<double> sorted(p.begin[2], field.at_rest);
+    Array sorted(p.begin[2], field.at_rest);
     for (std::size_t i = 0; i < sorted.size(); ++i)
       if (source[i] != nowhere) sorted[i] = (*field.values)[source[i]];
     *field.values = std::move(sorted);
