@@ -13,7 +13,6 @@
 #include "models/base/error.hpp"
 #include "models/base/units.hpp"
 #include "models/chip/bridged_arms.hpp"
-#include "models/chip/root_rotation.hpp"
 #include "models/laws/trilinear.hpp"
 
 namespace kerf::commands {
@@ -22,17 +21,28 @@ namespace {
 /// The specimen of a scene with grips: its arms are as high as its depth of cut.
 chip::Arms arms_of(const forward::Scene& scene, const std::string& file) {
   if (!scene.grips) throw InputError(file + ": a specimen has a [grips] block; see data/scenes/dcb_rcurve.toml");
-  chip::Arms arms{
-      .modulus = 0, .height = scene.cut.depth, .notch = scene.cut.notch * scene.cut.depth, .root_rotation = 0};
+  if (!scene.grips->both_arms || std::abs(scene.grips->lower_arm / scene.cut.depth - 1) > 1e-9)
+    throw InputError(file +
+                     ": the closed form is for two equal arms (grips.arms = \"both\", lower_arm = 1); for another "
+                     "specimen use `kerf calibrate` (data/jobs/wood_tl_r_curve.toml)");
+  chip::Arms arms{.modulus = 0,
+                  .transverse_modulus = 0,
+                  .shear_modulus = 0,
+                  .height = scene.cut.depth,
+                  .notch = scene.cut.notch * scene.cut.depth - scene.grips->position};
+  if (!(arms.notch > 0)) throw InputError(file + ": the grips (grips.position) hold the specimen ahead of its notch");
   std::visit(
       [&](const auto& law) {
         if constexpr (requires { law.elastic_modulus; }) {
-          arms.modulus = law.elastic_modulus / (1 - law.poisson_ratio * law.poisson_ratio);
-          arms.root_rotation = chip::isotropic_root_rotation;
+          arms.modulus = arms.transverse_modulus = law.plane_strain_modulus();
+          arms.shear_modulus = 0.5 * arms.modulus;
         } else {
-          arms.modulus = law.plane_strain_modulus();
-          arms.root_rotation = chip::orthotropic_root_rotation(law.constants().modulus_x, law.constants().modulus_y,
-                                                               law.constants().shear_modulus_xy);
+          const auto& c = law.constants();
+          const double xz = -c.poisson_xz / c.modulus_x, yz = -c.poisson_yz / c.modulus_y;  // compliances
+          arms.modulus = 1 / (1 / c.modulus_x - xz * xz * c.modulus_z);
+          arms.transverse_modulus = 1 / (1 / c.modulus_y - yz * yz * c.modulus_z);
+          const double b_12 = -c.poisson_xy / c.modulus_x - xz * yz * c.modulus_z;
+          arms.shear_modulus = 1 / (1 / c.shear_modulus_xy + 2 * b_12);
         }
       },
       scene.material);
@@ -87,7 +97,8 @@ void add_r_curve(CLI::App& app, int& exit_code) {
   command->add_option("--specimen", options->scene, "scene of the specimen (TOML with [grips])")->required();
   command->add_flag("--json", options->json, "machine-readable result");
   command->footer(
-      "Two bridged arms by beam theory: the trilinear law's G_init, G_b and bridging stress; strength and peak are "
+      "Two bridged arms as Timoshenko beams: the trilinear law's G_init, G_b and bridging stress; strength and peak "
+      "are "
       "the\n"
       "scene's, and with another law the initiation happens in a point. Exit code 4: the beams do\n"
       "not describe this curve. 6: it does not measure one of the toughnesses.");

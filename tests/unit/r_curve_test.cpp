@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <random>
 
 #include "data/r_curve.hpp"
@@ -14,41 +15,65 @@
 namespace kerf::chip {
 namespace {
 
-// Douglas-fir, TL: the specimen of data/scenes/dcb_rcurve.toml, N and mm.
-const Arms arms{.modulus = 14800, .height = 4, .notch = 16, .root_rotation = 1.7};
+// Douglas-fir, TL: the specimen of data/scenes/dcb_rcurve.toml in plane strain, N and mm.
+const Arms arms{.modulus = 14630, .transverse_modulus = 673, .shear_modulus = 806, .height = 4, .notch = 10};
 const BridgedCrack wood{.initiation_toughness = 0.215, .bridging_toughness = 0.405, .bridging_stress = 0.8};
 
-TEST(BridgedArms, TheUnbridgedCrackIsTheTextbooks) {
-  const double stiffness = arms.modulus * std::pow(arms.height, 3) / 12;
-  const Resistance start = resistance(arms, wood, 0);
-  EXPECT_NEAR(start.G_R, 0.215, 1e-12);
-  EXPECT_EQ(start.opening, 0);
-  // G = P^2 a (a + 2 chi h)/B, from Eq. (2) with M = P a at the tip.
-  const double pull = std::sqrt(0.215 * stiffness / (arms.notch * (arms.notch + 2 * arms.root_rotation * arms.height)));
-  EXPECT_NEAR(start.pull, pull, 1e-9 * pull);
+BridgedCrack trilinear(double strength) {
+  BridgedCrack whole = wood;
+  whole.strength = strength;
+  whole.peak = 0.1;
+  return whole;
+}
+
+/// What an unbridged crack seems to be longer by, in heights of an arm: G = P^2 (a + L)^2/B.
+double length_correction(const Arms& of) {
+  const Resistance start = resistance(of, wood, 0);
+  return (std::sqrt(start.G_R * of.bending_stiffness()) / start.pull - of.notch) / of.height;
+}
+
+TEST(BridgedArms, TheUnbridgedCrackIsTheElasticitySolutions) {
+  EXPECT_NEAR(resistance(arms, wood, 0).G_R, 0.215, 1e-12);
+  EXPECT_EQ(resistance(arms, wood, 0).opening, 0);
+  for (const double ratio : {1.0, 5.0, 25.0})
+    for (const double rho : {0.2, 1.0, 2.0, 3.5}) {  // Bao, Ho, Suo & Fan (1992), whose fit holds up to 4
+      Arms of = arms;
+      of.transverse_modulus = of.modulus / ratio;
+      of.shear_modulus = std::sqrt(of.modulus * of.transverse_modulus) / (2 * rho);
+      const double theirs = std::pow(ratio, 0.25) * (0.677 + 0.149 * (rho - 1) - 0.013 * (rho - 1) * (rho - 1));
+      EXPECT_NEAR(length_correction(of), theirs, 0.015 * theirs) << ratio << ' ' << rho;
+    }
+}
+
+TEST(BridgedArms, SlenderArmsAreEulersAndBernoullis) {
+  Arms slender = arms;
+  slender.notch = 1e4;
+  const double bending = slender.bending_stiffness(), pull = std::sqrt(0.215 * bending) / slender.notch;
+  const Resistance start = resistance(slender, wood, 0);
+  EXPECT_NEAR(start.pull, pull, 1e-3 * pull);
+  EXPECT_NEAR(start.rotation, pull * slender.notch * slender.notch / (2 * bending), 2e-3 * start.rotation);
 }
 
 TEST(BridgedArms, TheIntegralAboutTheSpecimenIsTheResistance) {
-  double last = 0;
-  for (const double extension : {0.0, 2.0, 5.0, 10.0, 20.0, 40.0}) {
-    const Resistance here = resistance(arms, wood, extension);
-    EXPECT_NEAR(2 * here.pull * here.rotation, here.G_R, 2e-5 * here.G_R) << extension;
-    EXPECT_GE(here.G_R, last);
-    last = here.G_R;
+  const double stretch = 4 / (5 * 673.0);
+  for (const BridgedCrack& crack : {wood, trilinear(4), trilinear(40)}) {
+    double last = 0;
+    for (const double extension : {0.0, 2.0, 5.0, 10.0, 20.0, 40.0}) {
+      const Resistance here = resistance(arms, crack, extension);
+      const double stretched = crack.strength == 4 ? stretch * here.traction * here.traction : 0;  // else a point
+      EXPECT_NEAR(2 * here.pull * here.rotation, here.G_R + stretched, 5e-5 * here.G_R) << extension;
+      EXPECT_GE(here.G_R, last);
+      last = here.G_R;
+    }
+    EXPECT_NEAR(last, 0.62, 1e-12) << "a developed zone resists with all there is";
+    EXPECT_LT(resistance(arms, crack, 5).G_R, 0.5);
   }
-  EXPECT_NEAR(last, 0.62, 1e-12) << "a developed zone resists with all there is";
-  EXPECT_LT(resistance(arms, wood, 5).G_R, 0.5);
 }
 
-TEST(BridgedArms, TheTrilinearZoneBalancesToo) {
-  BridgedCrack whole = wood;
-  whole.strength = 4;
-  whole.peak = 0.1;
-  EXPECT_LT(resistance(arms, whole, 0).G_R, 0.03) << "the front alone takes the rise to the peak";
-  EXPECT_NEAR(resistance(arms, whole, 40).G_R, 0.62, 1e-12);
-  // The double cantilever beam of data/scenes/dcb_rcurve.toml, simulated: G_R at two extensions, N/mm.
-  EXPECT_NEAR(resistance(arms, whole, 5.31).G_R, 0.291, 0.03);
-  EXPECT_NEAR(resistance(arms, whole, 11.44).G_R, 0.4835, 0.05);
+TEST(BridgedArms, AFrontThatFallsSteeplyIsAPoint) {
+  for (const double extension : {0.0, 3.0, 12.0})
+    EXPECT_DOUBLE_EQ(resistance(arms, trilinear(40), extension).pull, resistance(arms, wood, extension).pull);
+  EXPECT_LT(resistance(arms, trilinear(4), 0).G_R, 0.03) << "the front alone takes the rise to the peak";
 }
 
 TEST(BridgedArms, HigherArmsNeedALongerZone) {
@@ -110,6 +135,41 @@ TEST(RCurve, ItsFileIsReadWithItsUnits) {
   EXPECT_THAT(message("crack_extension[mm],G[N]\n"), ::testing::HasSubstr("not measured in N"));
   EXPECT_THAT(message("crack_extension[mm],G[J/m^2]\n0,x\n1,2\n2,3\n"), ::testing::HasSubstr("r.csv:2:3"));
   EXPECT_THAT(message("crack_extension[mm],G[J/m^2]\n0,1\n1,2\n"), ::testing::HasSubstr("three rows"));
+}
+
+TEST(RCurve, TheShippedCurveGivesBackWhatWentIn) {
+  const testing::TemporaryFolder folder;
+  const std::string data = KERF_SOURCE_DIR "/data/";
+  const ProcessOutput run = run_kerf(
+      "r-curve " + data + "sets/wood_tl_synthetic/r_curve.csv --specimen " + data + "scenes/dcb_rcurve.toml --json",
+      folder.path());
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const nlohmann::json fit = nlohmann::json::parse(run.out);
+  EXPECT_FALSE(fit["rejected"]);
+  for (const auto& [name, truth] : {std::pair("initiation_toughness", 215.0), std::pair("bridging_toughness", 405.0),
+                                    std::pair("bridging_stress", 0.8)}) {
+    const nlohmann::json& found = fit["parameters"][name];
+    EXPECT_LT(found["interval"][0], truth) << found;
+    EXPECT_GT(found["interval"][1], truth) << found;
+    EXPECT_LT(found["se"], 0.06 * truth) << found;
+  }
+}
+
+TEST(RCurve, TheClosedFormIsForTwoEqualArms) {
+  const testing::TemporaryFolder folder;
+  const std::string scene = read_file(KERF_SOURCE_DIR "/data/scenes/dcb_rcurve.toml");
+  const auto refusal = [&](const char* from, const char* to) {
+    write_atomically(folder / "scene.toml", testing::replaced(scene, from, to));
+    const ProcessOutput run =
+        run_kerf("r-curve " KERF_SOURCE_DIR "/data/sets/wood_tl_synthetic/r_curve.csv --specimen " +
+                     (folder / "scene.toml").string(),
+                 folder.path());
+    EXPECT_EQ(run.exit_code, 3);
+    return run.err;
+  };
+  EXPECT_THAT(refusal("arms = \"both\"", "arms = \"upper\""), ::testing::HasSubstr("two equal arms"));
+  EXPECT_THAT(refusal("arms = \"both\"", "arms = \"both\"\nlower_arm = 2"), ::testing::HasSubstr("two equal arms"));
+  EXPECT_THAT(refusal("notch = 4", "notch = 1.2"), ::testing::HasSubstr("grips.position"));
 }
 
 }  // namespace
