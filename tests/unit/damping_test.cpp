@@ -36,7 +36,7 @@ Energies damp(int order, double margin, Field&& field) {
   const double cell = scene.cell(), height = scene.cut.depth, length = scene.window.ahead * scene.cut.depth;
   State state = lay_out(scene);
   Particles& p = state.particles;
-  const std::vector<double> x = p.x, y = p.y;
+  const Array x = p.x, y = p.y;
   const auto counts = [&](std::size_t i) {
     return p.volume[i] > 0 && x[i] > 12 * cell && x[i] < length - 12 * cell && y[i] > margin * cell &&
            y[i] < height - margin * cell;
@@ -155,7 +155,7 @@ TEST(Thermostat, TakesItsFirstBiteFromParticlesAndNodesAlike) {
   Body body(0.03);  // three times the wanted share
   KineticThermostat act(thermostat, body.scene);
   const double before = body.kinetic();
-  const std::vector<double> momentum = body.state.grid.side[above].momentum;
+  const Array momentum = body.state.grid.side[above].momentum;
   act(body.state);
   const double cfl = body.scene.resolution.courant_number, rate = 0.02 * cfl * (3 - 1);
   const double keep = std::exp(-rate * cfl);

@@ -10,7 +10,7 @@ namespace kerf::bench {
 namespace {
 
 /// Largest difference over the largest value.
-double difference(const std::vector<double>& fast, const std::vector<ScalarKernel<double>::Particle>& scalar,
+double difference(const forward::Array& fast, const std::vector<ScalarKernel<double>::Particle>& scalar,
                   double ScalarKernel<double>::Particle::*member) {
   double most = 0, scale = 0;
   for (std::size_t i = 0; i < fast.size(); ++i) {

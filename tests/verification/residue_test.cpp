@@ -30,7 +30,7 @@ Part part_of(const std::string& stage) {
   return contact;
 }
 
-using NodalForces = std::array<std::vector<double>, 2>;
+using NodalForces = std::array<Array, 2>;
 
 /// Nodal forces of stresses and markers so far; before the stage that spreads them.
 NodalForces forces_so_far(State& state) {
@@ -47,7 +47,7 @@ NodalForces forces_so_far(State& state) {
 /// Work on the grid in this step, with the velocity that strained the particles and moved the markers and the mean of
 /// the forces before and after that.
 double work(const State& state, const NodalForces& before, const NodalForces& after,
-            const std::array<std::vector<double>, 2>& velocity) {
+            const std::array<Array, 2>& velocity) {
   double sum = 0.0;
   for (std::size_t side = 0; side < 2; ++side)
     for (std::size_t k = 0; k < 2 * state.grid.nodes(); ++k)
@@ -57,7 +57,7 @@ double work(const State& state, const NodalForces& before, const NodalForces& af
 
 /// The grid has moved on by a column of nodes.
 void shift(NodalForces& forces) {
-  for (std::vector<double>& force : forces) {
+  for (Array& force : forces) {
     force.erase(force.begin(), force.begin() + 2);
     force.insert(force.end(), 2, 0.0);
   }
@@ -123,7 +123,7 @@ Losses cut(const Scene& scene) {
     losses.residue = ledger.residue();
     losses.tool_work = ledger.tool_work;
   };
-  const std::vector<double> none(state.grid.side[0].force.size(), 0.0);
+  const Array none(state.grid.side[0].force.size(), 0.0);
   std::array<NodalForces, part_count> last;
   last.fill({none, none});
   Stiffening stiffening(scene);
@@ -132,7 +132,7 @@ Losses cut(const Scene& scene) {
     std::array<NodalForces, part_count> now;
     now.fill({none, none});
     NodalForces so_far{none, none};
-    std::array<std::vector<double>, 2> velocity;  // projected
+    std::array<Array, 2> velocity;  // projected
     bool acting = false;                          // between the first forces and their spreading
     for (const Stage& stage : stages) {
       const std::vector<double> force_x = state.crack.face[above].force_x, force_y = state.crack.face[above].force_y;
