@@ -64,18 +64,31 @@ ChildProcess::Outcome ChildProcess::reap() {
   return {End::exited, WEXITSTATUS(status)};
 }
 
+double ChildProcess::processor_seconds() const {
+  clockid_t clock{};
+  timespec used{};
+  if (::clock_getcpuclockid(child_, &clock) != 0 || ::clock_gettime(clock, &used) != 0) return 0;
+  return static_cast<double>(used.tv_sec) + 1e-9 * static_cast<double>(used.tv_nsec);
+}
+
 ChildProcess::Outcome ChildProcess::wait(std::optional<double> seconds, const std::function<bool()>& stop) {
   constexpr int milliseconds_between_questions = 100;
-  const auto begin = std::chrono::steady_clock::now();
+  auto last_work = std::chrono::steady_clock::now();
+  double worked = 0;
   const int watched = static_cast<int>(::syscall(SYS_pidfd_open, child_, 0));
   std::optional<End> killed;
   while (!killed) {
     pollfd ended{.fd = watched, .events = POLLIN, .revents = 0};
     if (::poll(&ended, 1, milliseconds_between_questions) > 0) break;
-    const double waited = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    const auto now = std::chrono::steady_clock::now();
+    if (const double used = processor_seconds(); used > worked) {
+      worked = used;
+      last_work = now;
+    }
+    const double idle = std::chrono::duration<double>(now - last_work).count();
     if (stop && stop())
       killed = End::stopped;
-    else if (seconds && waited > *seconds)
+    else if (seconds && (worked > *seconds || idle > *seconds))
       killed = End::timed_out;
   }
   if (watched >= 0) ::close(watched);

@@ -27,12 +27,14 @@ class ChildProcess {
     End end;
     int code;  ///< exit code or signal
   };
-  /// Waits for the end, at most `seconds`, and no longer than until `stop` says so (asked ten times a second); then
-  /// the whole group is killed.
+  /// Waits for the end, no longer than until the command has used the processor for more than `seconds` or not at all
+  /// for as long (a busy machine makes no run look hung), or `stop` says so (asked ten times a second); then the whole
+  /// group is killed.
   Outcome wait(std::optional<double> seconds, const std::function<bool()>& stop);
 
  private:
   Outcome reap();
+  double processor_seconds() const;
   void kill_group();
 
   pid_t child_ = -1;

@@ -107,8 +107,11 @@ std::vector<Block> declare() {
                       number("time_out", "1", 1.5, 1e6,
                              "a run is given up after this many medians of the finished runs of its cut")
                           .or_else("10"),
-                      number("shortest_time_out", "s", 0.1, 1e7, "but never before this time").or_else("60 s"),
-                      number("first_time_out", "s", 0.1, 1e7, "a run's time while none of its job has finished")
+                      number("shortest_time_out", "s", 0.1, 1e7,
+                             "but never before this much of the processor's time, or as long without any")
+                          .or_else("60 s"),
+                      number("first_time_out", "s", 0.1, 1e7,
+                             "a run's processor time while none of its job has finished")
                           .or_else("3600 s"),
                       text("backend", "where runs live: processes of this machine, or jobs of a Slurm cluster",
                            backend_names())

@@ -88,6 +88,18 @@ TEST_F(Script, ACrashIsRetriedWithASmallerStep) {
   EXPECT_DOUBLE_EQ(std::stod(written.substr(written.find(name) + name.size())), before / 2);
 }
 
+TEST_F(Script, ARunThatWorksIsNotHungForBeingSlow) {
+  const RunRecord record = run("for i in 1 2 3 4 5 6 7 8; do n=$i; sleep 0.15; done\ncp $good $2\n");
+  EXPECT_TRUE(record.accepted) << "four times its time by the clock, next to nothing of the processor's";
+  EXPECT_TRUE(record.retried.empty()) << record.retried;
+}
+
+TEST_F(Script, ARunThatKeepsTheProcessorTooLongIsHung) {
+  const RunRecord record = run("while :; do :; done\n");
+  EXPECT_TRUE(record.lost);
+  EXPECT_THAT(record.retried, HasSubstr("hung"));
+}
+
 TEST_F(Script, ARunThatHangsTwiceIsLost) {
   const RunRecord record = run("sleep 60 & wait\n");
   EXPECT_FALSE(record.accepted);
