@@ -150,6 +150,24 @@ std::string about_the_branches(const Job& job, const Fit& fit) {
          cuts + ". Slopes are those of the branch named; across the jump the intervals promise nothing.";
 }
 
+/// Cuts that were left out because no simulation of them could be compared.
+std::string about_the_failed(const Job& job, const Fit& fit) {
+  std::string left_out;
+  std::size_t count = 0;
+  for (std::size_t cut = 0; cut < fit.at.usable.size(); ++cut) {
+    if (fit.at.usable[cut]) continue;
+    ++count;
+    const MeasuredCut& measured = job.cuts[cut];
+    const std::vector<std::string>& refusals = fit.at.runs[cut].refusals;
+    left_out += fmt::format("{}{} {} ({})", left_out.empty() ? "" : ", ", measured.extension ? "extension" : "depth",
+                            show(measured.extension.value_or(measured.depth), "mm"),
+                            refusals.empty() ? "it could not be compared" : refusals.front());
+  }
+  if (count == 0) return "";
+  return fmt::format("Of {} cuts {} {} left out: {}. ", fit.at.usable.size(), count, count == 1 ? "is" : "are",
+                     left_out);
+}
+
 }  // namespace
 
 std::string show(double value, const std::string& unit) {
@@ -175,6 +193,7 @@ std::string state(const Job& job, const Calibration& calibration) {
            (calibration.partial ? "It was stopped before the differences that errors come from"
                                 : "The budget did not cover the differences that errors come from") +
            ", so no parameter is judged.";
+  text += about_the_failed(job, fit);
   for (const std::vector<ParameterEstimate>* all : {&fit.identifiability.parameters, &fit.identifiability.derived})
     for (const ParameterEstimate& p : *all) {
       std::string sentence = about(p, over_all_assumptions(calibration, p.name));

@@ -176,6 +176,23 @@ TEST(Calibration, AFifthOfTheRunsFailingChangesTheCountOnly) {
   EXPECT_NEAR(value(outcome.calibration, "friction"), 0.3, 0.003);
 }
 
+TEST(Calibration, NamesTheCutsThatItLeftOut) {
+  const TemporaryFolder folder;
+  const inverse::Job job = write_job(folder, with_starts(job_text) + "[budget]\nfailing_share = 0.5\n");
+  const auto outcome = calibrate(job, folder / "journal.jsonl", [](const forward::Scene& scene) {
+    forward::CutResult result = synthetic_cut(scene);
+    if (scene.cut.depth < 0.7) return result;
+    result.accepted = false;
+    result.refusals = {"the grid is too coarse"};
+    return result;
+  });
+  EXPECT_THAT(outcome.calibration.statement,
+              ::testing::StartsWith("Of 4 cuts 1 is left out: depth 0.800 mm (the grid is too coarse). "));
+  EXPECT_NEAR(value(outcome.calibration, "yield_stress"), 60, 0.6);
+  const auto all = calibrate(write_job(folder, with_starts(job_text)), folder / "all.jsonl");
+  EXPECT_THAT(all.calibration.statement, ::testing::Not(::testing::HasSubstr("left out")));
+}
+
 TEST(Calibration, SaysWhenTooManyRunsFail) {
   const TemporaryFolder folder;
   const auto outcome = calibrate(write_job(folder), folder / "journal.jsonl", testing::failing(1.1, synthetic_cut));
