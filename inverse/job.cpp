@@ -309,7 +309,11 @@ Job read_job(const fs::path& file) {
 
 Job read_job(const fs::path& file, const std::string& name, const Locate& locate) {
   InputFile source{.name = name, .content = read_file(file)};
-  const Contents contents = Document::parse(source.content, name).read(job_blocks());
+  const Document document = Document::parse(source.content, name);
+  if (!document.has("scene") && document.has("material"))
+    throw InputError(name +
+                     ": is a scene; a job names one (scene = \"...\"), curves and what is free in it; see data/jobs");
+  const Contents contents = document.read(job_blocks());
   const Values& top = contents.at("");
   InputFile scene = load(top.text("scene"), locate);
   Document base = Document::parse(scene.content, locate(scene.name).string());

@@ -59,6 +59,8 @@ void check_job(const std::filesystem::path& file) {
 }
 
 void check(const std::filesystem::path& file) {
+  if (file.extension() == ".h5")
+    throw InputError(file.string() + ": is a simulated cut; `kerf report` and `kerf explain` read it");
   if (file.extension() != ".toml") return check_curve(file);
   const Document document = Document::load(file);
   is_job(document) ? check_job(file) : check_scene(document);

@@ -17,6 +17,7 @@
 #include "forward/scene/preset.hpp"
 #include "inverse/commands/commands.hpp"
 #include "inverse/commands/expected_cost.hpp"
+#include "inverse/commands/job_study_session.hpp"
 
 namespace kerf::commands {
 namespace {
@@ -81,6 +82,8 @@ Explanation explanation_of(const std::string& file) {
   std::optional<forward::KeptCut> run;
   if (std::filesystem::path(file).extension() == ".h5") run = forward::read_cut(file);
   const Document document = run ? run->scene : Document::load(file);
+  if (is_job(document))
+    throw InputError(file + ": is a job; `kerf check` reads it, and `kerf explain` the scene that it names");
   Explanation all{.document = document,
                   .scene = forward::read_scene(document),
                   .state = {},

@@ -60,6 +60,10 @@ void use_slopes(const Job& job, RunDatabase& database, const Eigen::VectorXd& po
 void with_known_estimate(const fs::path& job_or_folder, const std::string& code,
                          const std::function<void(const KnownEstimate&)>& use) {
   if (fs::is_directory(job_or_folder)) {
+    if (!Folder::holds_one(job_or_folder))
+      throw InputError(
+          fmt::format("{}: holds no calibration; give a job, or the directory that `kerf calibrate -o` wrote",
+                      job_or_folder.string()));
     if (!fs::exists(job_or_folder / "result.json"))
       throw InputError(fmt::format("{}: holds no finished calibration; `kerf resume {}` goes on with it",
                                    job_or_folder.string(), job_or_folder.string()));

@@ -65,6 +65,23 @@ TEST(Door, BadDataExitsWithThreeAndItsPlace) {
   EXPECT_EQ(answer.err, file + ":" + std::to_string(line) + ":1: [tool] has no key \"raek\"; did you mean \"rake\"?\n");
 }
 
+TEST(Door, AFileOfAnotherKindIsNamed) {
+  const std::string scene = data + "scenes/verification_45.toml", job = data + "jobs/ti6al4v.toml";
+  const auto refused = [](const std::string& arguments) {
+    const ProcessOutput answer = kerf(arguments);
+    EXPECT_EQ(answer.exit_code, 3) << arguments;
+    return answer.err;
+  };
+  EXPECT_THAT(refused("calibrate " + scene + " -o no_such_folder"), HasSubstr("is a scene; a job names one"));
+  EXPECT_FALSE(std::filesystem::exists("no_such_folder"));
+  EXPECT_THAT(refused("explain " + job), HasSubstr("is a job; `kerf check` reads it"));
+  EXPECT_THAT(refused("coverage " + data + "scenes"), HasSubstr("holds no calibration"));
+  const std::string cut = ::testing::TempDir() + "kerf_door_cut.h5";
+  write_atomically(cut, "\x89HDF");
+  EXPECT_THAT(refused("check " + cut), HasSubstr("is a simulated cut"));
+  std::filesystem::remove(cut);
+}
+
 TEST(Door, ListPrintsTheDeclarations) {
   const ProcessOutput everything = kerf("list");
   EXPECT_EQ(everything.exit_code, 0);
