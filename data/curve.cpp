@@ -196,7 +196,10 @@ class CurveReader {
   double number(const std::vector<Cell>& row, const std::string& key) {
     const Column& column = columns_.at(key);
     const Cell& at = cell(row, key);
-    if (is_absent(at.text)) refuse(at, fmt::format("{} is empty; a number belongs here", column.title()));
+    if (is_absent(at.text))
+      refuse(at,
+             fmt::format("{} {}; a number belongs here", column.title(),
+                         at.text.empty() ? "is empty" : fmt::format("= {} says that nothing was measured", at.text)));
     try {
       if (column.constant) return read_constant(at, *column.parameter);
       const Quantity quantity = split_quantity(decimal_point(at));

@@ -59,7 +59,9 @@ class ProgressLines {
 
   void step(const inverse::TraceEntry& entry) const {
     fmt::print(stderr, "{}: chi2 {:.3f} after {} of at most {} runs{}\n", entry.what, entry.chi2, entry.runs, max_runs_,
-               entry.failed_cuts > 0 ? fmt::format(", {} cuts failed", entry.failed_cuts) : "");
+               entry.failed_cuts > 0
+                   ? fmt::format(", {} cut{} failed", entry.failed_cuts, entry.failed_cuts == 1 ? "" : "s")
+                   : "");
   }
 
  private:
@@ -130,18 +132,19 @@ void write_reduction(const inverse::Folder& folder) {
 }
 
 void print_table(const inverse::Calibration& calibration, const inverse::CalibrationCost& cost) {
-  fmt::print("{:<16}{:>14}{:>14}{:>28}   {}\n", "parameter", "value", "std. error", "95 % interval", "verdict");
   const inverse::Identifiability& known = calibration.fit.identifiability;
+  if (!known.parameters.empty())
+    fmt::print("{:<16}{:>14}{:>14}{:>28}   {}\n", "parameter", "value", "std. error", "95 % interval", "verdict");
   for (const std::vector<inverse::ParameterEstimate>* all : {&known.parameters, &known.derived})
     for (const inverse::ParameterEstimate& p : *all)
       fmt::print("{:<16}{:>14}{:>14}{:>28}   {}\n", p.name, inverse::show(p.value, p.unit),
                  inverse::show(p.standard_error, p.unit),
                  inverse::show(p.interval.lower, p.unit) + " ... " + inverse::show(p.interval.upper, p.unit),
                  inverse::name(p.verdict));
-  fmt::print("\nsingular values:");
+  if (known.singular_values.size() > 0) fmt::print("\nsingular values:");
   for (const double value : known.singular_values) fmt::print(" {:.3g}", value);
-  fmt::print("\n\n{}\n\n{} simulated cuts ({} failed), {:.0f} s\n", calibration.statement, cost.runs, cost.failed_runs,
-             cost.wall_seconds);
+  fmt::print("{}{}\n\n{} simulated cuts ({} failed), {:.0f} s\n", known.parameters.empty() ? "" : "\n\n",
+             calibration.statement, cost.runs, cost.failed_runs, cost.wall_seconds);
 }
 
 ExitCode finish(inverse::Folder& folder, const std::string& code, Show show, const Stop& stop) {

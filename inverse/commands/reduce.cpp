@@ -51,6 +51,11 @@ std::string number(double value) {
   return std::isfinite(value) ? fmt::format("{:.4g}", value) : "-";
 }
 
+/// Zero instead of the rounding error of a minimum that lies there.
+double rounded(const chip::FittedParameter& parameter) {
+  return std::abs(parameter.value) < 1e-6 * parameter.standard_error ? 0 : parameter.value;
+}
+
 void print_method(const chip::MethodResult& result) {
   fmt::print("\n{}: {}\n", result.method, result.meaning);
   if (!result.not_applied.empty()) {
@@ -59,10 +64,10 @@ void print_method(const chip::MethodResult& result) {
   }
   for (const auto& parameter : result.fit.parameters) {
     const double scale = consistent_units_in(parameter.unit);
-    fmt::print("  {:<19} {:>10} +- {:<9} {:>10} ... {:<10} {:<7} {}\n", parameter.name, number(parameter.value / scale),
-               number(parameter.standard_error / scale), number(parameter.lower / scale),
-               number(parameter.upper / scale), parameter.unit == "1" ? "" : parameter.unit,
-               inverse::verdict_of(result, parameter));
+    fmt::print("  {:<19} {:>10} +- {:<9} {:>10} ... {:<10} {:<7} {}\n", parameter.name,
+               number(rounded(parameter) / scale), number(parameter.standard_error / scale),
+               number(parameter.lower / scale), number(parameter.upper / scale),
+               parameter.unit == "1" ? "" : parameter.unit, inverse::verdict_of(result, parameter));
   }
   fmt::print("  {}{}\n", inverse::verdict_of(result),
              result.fit.aicc ? fmt::format(", AICc = {:.4g} ({} forces)", *result.fit.aicc, result.fit.data) : "");

@@ -105,10 +105,10 @@ def facts_of(result):
         ("chip ratio", _estimate(result["chip_ratio"]), "chip thickness over depth of cut"),
         ("curl radius", _estimate(curl) if finite(curl["value"]) else "straight", "positive curls away from the tool"),
         ("crack lead", f"{number(result['crack_lead'])} mm", "foremost broken pair ahead of the tip"),
-        ("mode I share", f"{number(percent(result['mode_I_fraction']))} %", "of the energy of separation"),
+        ("mode I share", _in_percent(result["mode_I_fraction"]), "of the energy of separation"),
         ("fracture energy", number(result["fracture_energy_ratio"], digits=4), "booked per new area, over the law’s"),
         ("deepest penetration", f"{number(result['deepest_penetration'])} cells", "of a crack face into the tool"),
-        ("ledger’s residue", f"{number(percent(residue), digits=2)} %", "of the tool’s work, unexplained"),
+        ("ledger’s residue", _in_percent(residue, digits=2), "of the tool’s work, unexplained"),
         ("wall time", f"{number(result['cost']['wall_s'])} s", ""),
     ]
 
@@ -129,6 +129,10 @@ def _lead(millimetres):
 
 def percent(share):
     return 100 * share if finite(share) else None
+
+
+def _in_percent(share, **format):
+    return f"{number(percent(share), **format)} %" if finite(share) else "–"
 
 
 def _estimate(estimate):

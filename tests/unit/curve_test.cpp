@@ -198,7 +198,7 @@ TEST(Curve, RefusalsSayWhereWhatAndWhatIsAllowed) {
       {header + "40,abc,1\n", "3:4", {"Fc[N/mm] = abc", "does not begin with a number"}},
       {header + "40,inf,1\n", "3:4", {"not a finite number"}},
       {header + "40,,1\n", "3:4", {"Fc[N/mm] is empty; a number belongs here"}},
-      {header + "40,3,nan\n", "3:6", {"Ft[N/mm] is empty"}},
+      {header + "40,3,nan\n", "3:6", {"Ft[N/mm] = nan says that nothing was measured"}},
       {header + ",3,1\n", "3:1", {"depth[um] is empty"}},
       {header + "0,3,1\n", "3:1", {"depth[um] = 0 is below 1e-06 mm"}},
       {header + "-40,3,1\n", "3:1", {"is below"}},
