@@ -10,8 +10,8 @@ from .page import finite, integer, interval_text, large_unit, number, pretty_uni
 LAWS = {"j2": "von Mises plasticity with the Jaumann rate (J2)",
         "hencky": "hyperelastic von Mises plasticity in the logarithmic strain",
         "hill": "orthotropic elasticity with Hill's yield surface"}
-OPTIMISERS = {"gauss_newton": "bounded Gauss-Newton steps in a trust region, with slopes from finite differences and "
-                              "Broyden updates",
+OPTIMISERS = {"gauss_newton": "bounded Gauss-Newton steps in a trust region, with slopes and curvatures by "
+                              "regression through all simulations (Gaussian priors)",
               "multi_fidelity": "Gauss-Newton steps on coarse simulations corrected to fine ones, the last of them on fine "
                                 "simulations alone",
               "surrogate": "quadratic surrogates from many starts, then bounded Gauss-Newton steps",
@@ -217,7 +217,7 @@ def _intervals(result):
     quantile = (result.get("identifiability") or {}).get("interval_half_width_in_se")
     scale = result.get("error_scale")
     yield ("Standard errors follow from the weighted Jacobian; a 95 % interval holds the values at which the profile of "
-           "the misfit, with all other parameters refitted on the linearised simulation, rises by less than " +
+           "the misfit, with all other parameters refitted on quadratics fitted to the simulations, rises by less than " +
            (number((quantile * (scale or 1)) ** 2) if finite(quantile) else "its 95 % quantile") + ".")
     if finite(scale) and scale > 1:
         yield (f"Errors are widened by {number(scale)} = √(χ²/degrees of freedom), with Student's t, because the misfit "

@@ -248,7 +248,7 @@ def _profiles(page, result):
     section = page.section("Profiles of the misfit", "profiles", "profiles")
     checked = any(finite((end or {}).get("chi2_simulated")) for p in estimates for end in p.get("ends") or ())
     section.figure(picture, html(
-        "The least misfit with one quantity held and all others refitted on the linearised simulation; where it rises by {} "
+        "The least misfit with one quantity held and all others refitted on the quadratics fitted to the simulations; where it rises by {} "
         "the 95 % interval (shaded) ends. Dashed: the parabola of the standard error, from which a profile that leans or "
         "flattens departs.{}", number(allowed),
         " Squares: ends of intervals that were simulated." if checked else ""))
@@ -312,7 +312,7 @@ def _posterior(page, result):
     section = page.section("Posterior density", "posterior", "posterior")
     section.figure(uncertainty_figures.posterior(estimates), html(
         "A second opinion on every interval: {} draws ({} of them independent) from the density of the parameters given the "
-        "data, uniform within the bounds of the search, over the linearised simulation. Solid lines: 95 % intervals by "
+        "data, uniform within the bounds of the search, over the quadratics fitted to the simulations. Solid lines: 95 % intervals by "
         "profile; dashed: by the draws. {} draws are shown.", integer(drawn["draws"]), integer(drawn["independent"]),
         integer(len(estimates[0]["draws"]))))
 
