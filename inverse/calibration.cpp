@@ -79,7 +79,7 @@ class Calibrator {
     if (job_.optimiser.audit) audit(first);
     result_.choice = objective_.choice();
 
-    // The differences at the end, from which the errors come, and the checks are paid for in advance.
+    // Differences at the end, which errors may want, and the checks are paid for in advance.
     const std::size_t reserve = job_.cuts.size() * (job_.free.size() + job_.numerics.size());
     const std::size_t all = job_.budget.max_runs;
     objective_.limit(all > 3 * reserve ? all - reserve : all);

@@ -101,7 +101,7 @@ ChildRuns::Attempt ChildRuns::attempt(const Document& scene, const std::string& 
   if (outcome.end == End::exited && outcome.code == static_cast<int>(ExitCode::bad_data)) throw InputError(said);
   if (outcome.end == End::exited && outcome.code == 127)
     throw InputError(fmt::format("{}: cannot be executed", backend_->command(run).front()));
-  attempt.lost = outcome.end == End::timed_out          ? fmt::format("hung: it was given {:.3g} s", time_out)
+  attempt.lost = outcome.end == End::timed_out ? fmt::format("hung: it was given {:.3g} s of a processor", time_out)
                  : outcome.end == End::killed_by_signal ? fmt::format("crashed: {}", ::strsignal(outcome.code))
                                                         : fmt::format("ended with code {} and without a result{}{}",
                                                                       outcome.code, said.empty() ? "" : ": ", said);

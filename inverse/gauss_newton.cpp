@@ -65,11 +65,22 @@ class GaussNewton {
     // The slopes at the end are wanted anyway; once it is near, they come before another step.
     const bool near = promise <= std::max(worthwhile(), standard_error_squared);
     if (near && objective_.choice().confirm && !model_.is_sure(objective_)) return difference();
-    if (promise <= worthwhile()) return stop(true, "no step promises a decrease that could be told from noise");
+    if (promise <= worthwhile()) return conclude(known_chi2);
     std::vector<Eigen::VectorXd> points{bold.point};
     const ModelMinimum careful = propose(objective_, model_, radius_ / 3);
     if ((careful.point - bold.point).lpNorm<Eigen::Infinity>() > 0.05 * radius_) points.push_back(careful.point);
     take_best(objective_.evaluate(points), promise);
+  }
+
+  /// Nothing worthwhile lies within the radius. Beyond it, where earlier steps had failed, there may be.
+  void conclude(double known_chi2) {
+    if (!comparable(objective_, model_.known())) return stop(false, "the differences of too many cuts failed");
+    const double beyond = known_chi2 - propose(objective_, model_, largest_radius).chi2;
+    if (beyond <= std::max(worthwhile(), standard_error_squared))
+      return stop(true, "no step promises a decrease that could be told from noise");
+    if (widened_) return stop(false, "steps that the slopes promise do not lower the misfit");
+    widened_ = true;
+    radius_ = first_radius;
   }
 
   void take_best(const std::vector<Evaluation>& trials, double promise) {
@@ -86,6 +97,7 @@ class GaussNewton {
     const double step = (trials.front().point - here().point).lpNorm<Eigen::Infinity>();
     for (const Evaluation& trial : trials) model_.learn(trial);
     if (!best) return refuse(step, promise, trials.front());
+    refused_short_ = 0;
     const bool new_branch = LocalModel::branches_differ(here(), *best);
     if (best == &trials.front() && best_decrease > 0.75 * promise) radius_ = std::min(largest_radius, 2 * radius_);
     if (best_decrease < 0.25 * promise) radius_ = std::max(0.5 * step, 2 * objective_.choice().step);
@@ -105,7 +117,12 @@ class GaussNewton {
       radius_ = std::max(radius_, 2 * objective_.choice().step);
       return difference();
     }
-    if (radius_ >= objective_.choice().step / 2) return;
+    // The refused trial has changed the model: what it promises next is another step.
+    const double least_radius = objective_.choice().step / 2;
+    if (radius_ >= least_radius || ++refused_short_ == 1) {
+      radius_ = std::max(radius_, least_radius);
+      return;
+    }
     const bool at_noise = promise <= std::max(10 * worthwhile(), standard_error_squared);
     stop(at_noise, at_noise ? "the steps left promise little and deliver less: the end of what the simulation resolves"
                             : "steps that the slopes promise do not lower the misfit");
@@ -114,6 +131,8 @@ class GaussNewton {
   Objective& objective_;
   LocalModel model_;
   double radius_ = first_radius;
+  int refused_short_ = 0;  ///< steps in a row that were refused although short
+  bool widened_ = false;   ///< a shrunken radius was given up once
   bool done_ = false, converged_ = false;
   std::string reason_;
 };

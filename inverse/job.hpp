@@ -115,7 +115,7 @@ struct OptimiserChoice {
   double noise = 0.001;      ///< relative roughness of a simulated force; smaller decreases are not believed
   double roughness = 0.001;  ///< the part of it that two neighbouring points do not share: of a difference
   bool central = false;      ///< two-sided differences
-  bool confirm = true;       ///< a search ends on fresh differences only; a coarse one, checked by fine runs, need not
+  bool confirm = true;       ///< a search ends on sure slopes only; a coarse one, checked by fine runs, need not
   bool audit = false;        ///< measure both before the search; what the job gives itself stays
   bool step_given = false, noise_given = false;
   bool noise_measured = false;  ///< by the audit, so that a run's own standard error says nothing more

@@ -11,8 +11,7 @@ namespace {
 
 constexpr auto F_c = static_cast<Eigen::Index>(Observable::F_c);
 constexpr auto F_t = static_cast<Eigen::Index>(Observable::F_t);
-constexpr double harmless = 0.1;  // share by which errors of slopes may add to the information on a parameter
-constexpr double unknown_error = 0.5 * QuadraticResponse::any_slope;
+constexpr double harmless = 0.1;          // share by which errors of slopes may add to the information on a parameter
 constexpr double worse_than_fresh = 1.2;  // another difference must be worth its run
 
 /// Observables on the scale where they answer the parameters most nearly linearly: logarithms of what is positive, the
@@ -35,14 +34,17 @@ double unit(const Evaluation& base, Eigen::Index cut, Eigen::Index observable) {
 
 LocalModel::LocalModel(Evaluation base, const OptimiserChoice& choice)
     : base_(std::move(base)),
-      roughness_(choice.roughness),
-      step_(choice.step),
+      choice_(choice),
       runs_(base_.usable.size()),
       has_slopes_(base_.usable.size(), false),
       at_jump_(base_.usable.size(), false) {
-  errors_ = rough_errors_ = Eigen::MatrixXd::Zero(base_.simulated.rows(), base_.point.size());
+  const Eigen::Index n = base_.point.size();
+  errors_ = Eigen::MatrixXd::Zero(base_.simulated.rows(), n);
+  surprises_ = Eigen::MatrixXd::Ones(base_.simulated.rows(), base_.simulated.cols());
   slopes_.fill(errors_);
-  curvatures_.fill(std::vector(base_.usable.size(), Eigen::MatrixXd(base_.point.size(), base_.point.size())));
+  silent_.fill(SlopeMask::Constant(errors_.rows(), n, false));
+  rough_covariances_.assign(base_.usable.size(), Eigen::MatrixXd::Zero(n, n));
+  curvatures_.fill(rough_covariances_);
   learn(base_);
 }
 
@@ -71,7 +73,7 @@ void LocalModel::refit() {
     at_jump_[cut] = false;
     for (const Run& run : runs_[cut])
       if (run.branch != base_.runs[cut].branch)
-        at_jump_[cut] = at_jump_[cut] || (run.point - base_.point).lpNorm<Eigen::Infinity>() <= 1.001 * step_;
+        at_jump_[cut] = at_jump_[cut] || (run.point - base_.point).lpNorm<Eigen::Infinity>() <= 1.001 * choice_.step;
       else if (run.point != base_.point)
         used.push_back(&run);
     const auto count = static_cast<Eigen::Index>(used.size());
@@ -83,31 +85,42 @@ void LocalModel::refit() {
       steps.row(i) = (run.point - base_.point).transpose();
       changes.row(i) = run.scaled - here;
     }
-    const QuadraticResponse response(steps, roughness_);
+    const QuadraticResponse response(steps, choice_.roughness);
     for (Eigen::Index k = 0; k < changes.cols(); ++k) {
       if (!changes.col(k).allFinite()) continue;  // it was not simulated
+      surprises_(row, k) = response.surprise(changes.col(k));
       slopes_[static_cast<std::size_t>(k)].row(row) = response.slopes(changes.col(k)).transpose();
       curvatures_[static_cast<std::size_t>(k)][cut] = response.curvatures(changes.col(k));
     }
     silence(cut, steps, changes);
     errors_.row(row) = response.slope_errors().transpose();
-    rough_errors_.row(row) = response.rough_errors().transpose();
-    has_slopes_[cut] = response.slope_errors().maxCoeff() <= unknown_error;
+    rough_covariances_[cut] = response.rough_covariance();
+    has_slopes_[cut] = response.slope_errors().maxCoeff() <= unknown_error();
   }
 }
 
 void LocalModel::silence(std::size_t cut, const Eigen::MatrixXd& steps, const Eigen::MatrixXd& changes) {
+  const auto row = static_cast<Eigen::Index>(cut);
+  for (SlopeMask& silent : silent_) silent.row(row).setConstant(false);
   for (Eigen::Index i = 0; i < steps.rows(); ++i) {
     Eigen::Index j = 0;
     steps.row(i).cwiseAbs().maxCoeff(&j);
     if ((steps.row(i).array() != 0).count() != 1) continue;
     for (std::size_t k = 0; k < observable_count; ++k) {
       if (changes(i, static_cast<Eigen::Index>(k)) != 0) continue;
-      slopes_[k](static_cast<Eigen::Index>(cut), j) = 0;
+      silent_[k](row, j) = true;
+      slopes_[k](row, j) = 0;
       curvatures_[k][cut].row(j).setZero();
       curvatures_[k][cut].col(j).setZero();
     }
   }
+}
+
+double LocalModel::fresh_error() const {
+  const double step = choice_.step, rough = choice_.roughness / step;
+  if (choice_.central)
+    return std::hypot(rough / std::numbers::sqrt2, QuadraticResponse::usual_third_order * step * step / 6);
+  return std::hypot(rough * std::numbers::sqrt2, QuadraticResponse::usual_curvature * step / 2);
 }
 
 LocalModel::SlopeMask LocalModel::unsure(const Objective& objective) const {
@@ -121,21 +134,26 @@ LocalModel::SlopeMask LocalModel::unsure(const Objective& objective) const {
   if (information.rows() > n) information(n, n) += 1e-12 * (1 + information(n, n));
   const Eigen::VectorXd variances = information.inverse().diagonal();
 
-  const double fresh =
-      std::hypot(std::numbers::sqrt2 * roughness_ / step_, 0.5 * QuadraticResponse::usual_curvature * step_);
+  const double fresh = fresh_error(), unknown = unknown_error();
   SlopeMask result(errors_.rows(), n);
   for (Eigen::Index i = 0; i < errors_.rows(); ++i)
     for (Eigen::Index j = 0; j < n; ++j) {
-      double feigned = 0;
+      double feigned = 0, surprise = 1;
       for (Eigen::Index k = 0; k < base_.simulated.cols(); ++k) {
         const double weight = misfit.weights()(i, k);
-        if (weight == 0) continue;
-        const double value = is_logarithmic(k) ? base_.simulated(i, k) : unit(base_, i, k);
-        feigned += std::pow(weight * value * errors_(i, j), 2);
+        if (weight == 0 || silent_[static_cast<std::size_t>(k)](i, j)) continue;
+        const double rough = std::sqrt(rough_covariances_[static_cast<std::size_t>(i)](j, j));
+        const double bent = std::sqrt(std::max(0.0, errors_(i, j) * errors_(i, j) - rough * rough));
+        surprise = std::max(surprise, surprises_(i, k));
+        const double value = typical_size(base_.simulated, i, k);
+        feigned += std::pow(
+            surprises_(i, k) * weight * std::hypot(value * rough, (k == F_t ? base_.simulated(i, F_c) : value) * bent),
+            2);
       }
       const auto cut = static_cast<std::size_t>(i);
       const bool matters = feigned * variances[j] * static_cast<double>(count(base_.usable)) > harmless;
-      result(i, j) = base_.usable[cut] && (!has_slopes_[cut] || (matters && errors_(i, j) > worse_than_fresh * fresh));
+      result(i, j) = base_.usable[cut] &&
+                     (errors_(i, j) > unknown || (matters && surprise * errors_(i, j) > worse_than_fresh * fresh));
     }
   return result;
 }
@@ -149,16 +167,14 @@ bool LocalModel::is_sure(const Objective& objective) const {
 }
 
 void LocalModel::difference(Objective& objective) {
-  if (objective.choice().confirm) {
-    for (std::vector<Run>& runs : runs_) std::erase_if(runs, [](const Run& run) { return run.borrowed; });
-    refit();
-  }
+  for (std::vector<Run>& runs : runs_) std::erase_if(runs, [](const Run& run) { return run.borrowed; });
+  refit();
   improve(objective, unsure(objective));
   fresh_ = true;
 }
 
 void LocalModel::difference_unknown(Objective& objective) {
-  SlopeMask unknown = errors_.array() > unknown_error;
+  SlopeMask unknown = errors_.array() > unknown_error();
   for (std::size_t cut = 0; cut < base_.usable.size(); ++cut)
     if (!base_.usable[cut]) unknown.row(static_cast<Eigen::Index>(cut)).setConstant(false);
   improve(objective, unknown);
@@ -201,7 +217,13 @@ void LocalModel::improve(Objective& objective, const SlopeMask& chosen) {
       probed.push_back(&slope);
     }
     if (probes.empty()) continue;
-    const std::vector<RunRecord> records = objective.simulate(probes);
+    std::vector<RunRecord> records;
+    try {
+      records = objective.simulate(probes);
+    } catch (const BudgetSpent&) {
+      refit();  // what was paid for counts
+      throw;
+    }
     for (std::size_t p = 0; p < records.size(); ++p) {
       Wanted& slope = *probed[p];
       if (!objective.misfit().is_usable(slope.cut, records[p])) continue;
@@ -232,21 +254,25 @@ void LocalModel::learn(const Evaluation& other) {
 
 void LocalModel::borrow_for(const Evaluation& other) {
   const Observations predicted = predict(other.point);
-  const Eigen::VectorXd step = other.point - base_.point;
+  Eigen::VectorXd step = other.point - base_.point;
+  if (step.norm() > reach) step *= reach / step.norm();
   for (std::size_t cut = 0; cut < runs_.size(); ++cut) {
     const auto row = static_cast<Eigen::Index>(cut);
     for (std::size_t k = 0; k < observable_count; ++k) slopes_[k].row(row) += (curvatures_[k][cut] * step).transpose();
-    if (!base_.usable[cut] || !other.usable[cut]) {
-      runs_[cut].clear();
-      continue;
+    std::vector<Run>& runs = runs_[cut];
+    const bool same = base_.usable[cut] && other.usable[cut] && base_.runs[cut].branch == other.runs[cut].branch;
+    if (!same) {
+      runs.clear();
+      has_slopes_[cut] = false;
+      errors_.row(row).setConstant(QuadraticResponse::any_slope);
+    } else {
+      const Eigen::RowVectorXd shift = model_scale(other.simulated.row(row)) - model_scale(predicted.row(row));
+      for (Run& run : runs) {
+        run.scaled += shift;
+        run.borrowed = true;
+      }
     }
-    const Eigen::RowVectorXd shift = model_scale(other.simulated.row(row)) - model_scale(predicted.row(row));
-    std::erase_if(runs_[cut], [&](const Run& run) { return run.branch != base_.runs[cut].branch; });
-    for (Run& run : runs_[cut]) {
-      run.scaled += shift;
-      run.branch = other.runs[cut].branch;
-      run.borrowed = true;
-    }
+    if (other.usable[cut]) add(cut, other.point, other.runs[cut], other.simulated.row(row));
   }
   base_ = other;
   fresh_ = false;
@@ -266,10 +292,10 @@ void LocalModel::move_to(const Evaluation& other) {
   learn(other);
 }
 
-Eigen::MatrixXd LocalModel::slope_errors(Eigen::Index observable) const {
-  Eigen::MatrixXd errors = rough_errors_;
-  for (Eigen::Index i = 0; i < errors.rows(); ++i) errors.row(i) *= unit(base_, i, observable);
-  return errors;
+Eigen::MatrixXd LocalModel::slope_covariance(Eigen::Index cut, Eigen::Index observable) const {
+  const double one = unit(base_, cut, observable);
+  const auto heard = (!silent_[static_cast<std::size_t>(observable)].row(cut).array()).cast<double>().matrix();
+  return one * one * heard.asDiagonal() * rough_covariances_[static_cast<std::size_t>(cut)] * heard.asDiagonal();
 }
 
 bool LocalModel::branches_differ(const Evaluation& a, const Evaluation& b) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
@@ -28,13 +29,14 @@ class LocalModel {
   /// The same for slopes of which nothing is known, as those of a cut are that jumped to another branch with the base.
   void difference_unknown(Objective& objective);
   /// Differences would not change what is known of the parameters: they were taken at the present base, or would be no
-  /// better than what other runs tell, or the errors of the slopes add less than a tenth to the information on any.
+  /// better than what other runs of the same fidelity tell, or the errors of the slopes add less than a tenth to the
+  /// information on any.
   bool is_sure(const Objective& objective) const;
 
   const Evaluation& base() const { return base_; }
   /// Cuts that the model predicts.
   CutMask known() const { return both(has_slopes_, base_.usable); }
-  /// Cuts of which a difference landed on another branch: the point lies within a step of a jump.
+  /// Cuts of which a run within a step of the base landed on another branch.
   const CutMask& at_jump() const { return at_jump_; }
 
   Observations predict(const Eigen::VectorXd& point) const;
@@ -54,16 +56,16 @@ class LocalModel {
 
   /// Takes another simulated point into account.
   void learn(const Evaluation& other);
-  /// The same response about a run of another fidelity.
+  /// The same response about a run of another fidelity; nothing is known of a cut on another branch there.
   void borrow_for(const Evaluation& other);
   /// The same runs about another simulated point.
   void move_to(const Evaluation& other);
 
   /// Of an observable on the model's scale by a search coordinate: cuts x parameters.
   const Eigen::MatrixXd& slopes(Eigen::Index observable) const { return slopes_[static_cast<std::size_t>(observable)]; }
-  /// Standard errors of d ln(observable), of F_t and curvature d(observable), that come from how rough the simulated
-  /// values are: cuts x parameters.
-  Eigen::MatrixXd slope_errors(Eigen::Index observable) const;
+  /// Covariance of the slopes d ln(observable), of F_t and curvature d(observable), of one cut that comes from how
+  /// rough the simulated values are: parameters x parameters.
+  Eigen::MatrixXd slope_covariance(Eigen::Index cut, Eigen::Index observable) const;
   /// With every slope by the coordinates replaced by its product with `share`: parameters x parameters.
   LocalModel scaled(const Eigen::MatrixXd& share) const;
   static bool is_logarithmic(Eigen::Index observable) { return is_positive(static_cast<std::size_t>(observable)); }
@@ -73,6 +75,8 @@ class LocalModel {
 
  private:
   static constexpr double reach = 0.5;  ///< in search coordinates
+
+  using SlopeMask = Eigen::Matrix<bool, Eigen::Dynamic, Eigen::Dynamic>;
 
   struct Run {
     Eigen::VectorXd point;
@@ -104,18 +108,24 @@ class LocalModel {
   /// A parameter alone that changes an observable by not one bit does not act on it: no fit through other runs may say
   /// so. One step and one change of every run per row.
   void silence(std::size_t cut, const Eigen::MatrixXd& steps, const Eigen::MatrixXd& changes);
+  /// Error of the slope that a difference gives.
+  double fresh_error() const;
+  /// From which error on a slope counts as not known at all.
+  double unknown_error() const { return std::max(1.0, 2 * fresh_error()); }
   /// Of the slopes, those that a difference should improve: cuts x parameters.
-  using SlopeMask = Eigen::Matrix<bool, Eigen::Dynamic, Eigen::Dynamic>;
   SlopeMask unsure(const Objective& objective) const;
   /// Simulates differences for the slopes chosen.
   void improve(Objective& objective, const SlopeMask& chosen);
 
   Evaluation base_;
-  double roughness_, step_;                                                ///< see OptimiserChoice
+  OptimiserChoice choice_;
   std::vector<std::vector<Run>> runs_;                                     ///< of every cut
   std::array<Eigen::MatrixXd, observable_count> slopes_;                   ///< cuts x parameters
   std::array<std::vector<Eigen::MatrixXd>, observable_count> curvatures_;  ///< of every cut: parameters x parameters
-  Eigen::MatrixXd errors_, rough_errors_;  ///< of the slopes, all and from roughness: cuts x parameters
+  std::array<SlopeMask, observable_count> silent_;  ///< slopes that are zero to the last bit: cuts x parameters
+  Eigen::MatrixXd errors_;                          ///< of the slopes, all that is not known: cuts x parameters
+  Eigen::MatrixXd surprises_;                       ///< factors on these errors: cuts x observables
+  std::vector<Eigen::MatrixXd> rough_covariances_;  ///< of the slopes of every cut, from roughness
   CutMask has_slopes_, at_jump_;
   bool fresh_ = false;  ///< every difference that matters was taken at the present base
 };

@@ -1,13 +1,13 @@
 #include "inverse/quadratic_response.hpp"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 
 namespace kerf::inverse {
 namespace {
 
-constexpr double usual_third_order = 0.4;  // of a logarithm, per cube of a search coordinate
-constexpr double rounding = 1e-6;          // roughness of what is called smooth
+constexpr double rounding = 1e-6;  // roughness of what is called smooth
 
 }  // namespace
 
@@ -26,17 +26,23 @@ QuadraticResponse::QuadraticResponse(const Eigen::MatrixXd& steps, double roughn
   const Eigen::MatrixXd roughnesses =
       rough * (Eigen::MatrixXd::Identity(runs, runs) + Eigen::MatrixXd::Ones(runs, runs));
   Eigen::MatrixXd covariance = design * prior.asDiagonal() * design.transpose() + roughnesses;
-  for (Eigen::Index i = 0; i < runs; ++i)
-    covariance(i, i) += std::pow(usual_third_order * std::pow(steps.row(i).norm(), 3) / 6, 2);
-  mean_ = Eigen::MatrixXd::Zero(terms, runs);
-  if (runs > 0) mean_ = covariance.ldlt().solve(design * prior.asDiagonal()).transpose();
+  const double third = usual_third_order / 6;
+  covariance.array() += third * third * (steps * steps.transpose()).array().cube();
+  precision_ = covariance;
+  if (runs > 0) precision_ = covariance.ldlt().solve(Eigen::MatrixXd::Identity(runs, runs));
+  mean_ = prior.asDiagonal() * design.transpose() * precision_;
 
   const Eigen::MatrixXd of_slopes = mean_.topRows(n);
   const Eigen::VectorXd explained = (of_slopes * steps).diagonal().cwiseProduct(prior.head(n));
   slope_errors_ = (prior.head(n) - explained).cwiseMax(0).cwiseSqrt();
-  rough_errors_ = roughness > 0
-                      ? Eigen::VectorXd((of_slopes * roughnesses * of_slopes.transpose()).diagonal().cwiseSqrt())
-                      : Eigen::VectorXd::Zero(n);
+  rough_covariance_ = Eigen::MatrixXd::Zero(n, n);
+  if (roughness > 0) rough_covariance_ = of_slopes * roughnesses * of_slopes.transpose();
+}
+
+double QuadraticResponse::surprise(const Eigen::VectorXd& changes) const {
+  const auto beyond_slopes = static_cast<double>(changes.size() - parameters_);
+  if (beyond_slopes <= 0) return 1;
+  return std::sqrt(std::max(1.0, changes.dot(precision_ * changes) / beyond_slopes));
 }
 
 Eigen::VectorXd QuadraticResponse::slopes(const Eigen::VectorXd& changes) const {

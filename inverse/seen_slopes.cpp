@@ -7,6 +7,11 @@
 #include "inverse/identifiability.hpp"
 
 namespace kerf::inverse {
+namespace {
+
+constexpr double by_chance = 0.999;  // share of the parameters which act on nothing that are called unseen
+
+}  // namespace
 
 LocalModel seen_slopes(const LocalModel& model, const Misfit& misfit) {
   const Eigen::Index n = model.base().point.size(), data = misfit.weights().size();
@@ -18,7 +23,7 @@ LocalModel seen_slopes(const LocalModel& model, const Misfit& misfit) {
     if (edge.squaredNorm() > 0) jacobian -= edge * (edge.transpose() * jacobian) / edge.squaredNorm();
   }
 
-  Eigen::VectorXd feigned = Eigen::VectorXd::Zero(n);
+  Eigen::MatrixXd feigned = Eigen::MatrixXd::Zero(n, n);
   int compared = 0;
   for (Eigen::Index i = 0; i < misfit.weights().rows(); ++i)
     for (Eigen::Index k = 0; k < misfit.weights().cols(); ++k) {
@@ -26,21 +31,23 @@ LocalModel seen_slopes(const LocalModel& model, const Misfit& misfit) {
       if (weight == 0 || !model.known()[static_cast<std::size_t>(i)]) continue;
       ++compared;
       const double unit = weight * (LocalModel::is_logarithmic(k) ? model.base().simulated(i, k) : 1);
-      feigned += (unit * model.slope_errors(k).row(i)).cwiseAbs2().transpose();
+      feigned += unit * unit * model.slope_covariance(i, k);
     }
-  if (compared == 0 || feigned.minCoeff() <= 0) return model;  // slopes that are exact
+  const double largest = compared == 0 ? 0 : feigned.diagonal().maxCoeff();
+  if (largest == 0) return model;                // slopes that are exact
+  feigned.diagonal().array() += 1e-9 * largest;  // a parameter that acts on nothing
 
   const boost::math::chi_squared errors_alone(compared);
-  const double reached = boost::math::quantile(errors_alone, 0.95) / compared;
+  const double reached = boost::math::quantile(errors_alone, by_chance) / compared;
   const Eigen::MatrixXd information = jacobian.transpose() * jacobian;
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(information, feigned.asDiagonal());
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(information, feigned);
   Eigen::VectorXd share(n);
   for (Eigen::Index c = 0; c < n; ++c) {
     const double lambda = solver.eigenvalues()[c];
     share[c] = lambda > reached ? std::sqrt(1 - 1 / lambda) : 0;
   }
   const Eigen::MatrixXd& u = solver.eigenvectors();  // u^T D u = 1
-  return model.scaled(u * share.asDiagonal() * u.transpose() * feigned.asDiagonal());
+  return model.scaled(u * share.asDiagonal() * u.transpose() * feigned);
 }
 
 }  // namespace kerf::inverse

@@ -104,7 +104,7 @@ TEST_F(Script, ARunThatHangsTwiceIsLost) {
   const RunRecord record = run("sleep 60 & wait\n");
   EXPECT_FALSE(record.accepted);
   EXPECT_TRUE(record.lost);
-  EXPECT_THAT(record.retried, HasSubstr("hung: it was given 0.3 s"));
+  EXPECT_THAT(record.retried, HasSubstr("hung: it was given 0.3 s of a processor"));
   EXPECT_THAT(record.refusals, ::testing::ElementsAre(HasSubstr("hung")));
   const RunRecord back = inverse::record_from_json(inverse::to_json(record));
   EXPECT_EQ(back.retried, record.retried);

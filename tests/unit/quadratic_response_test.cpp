@@ -49,7 +49,7 @@ TEST(QuadraticResponse, KnowsByHowMuchCurvatureSpoilsAOneSidedDifference) {
   EXPECT_LT((response.slopes(changes(steps)) - slopes - bias).norm(), 1e-3);
   for (Eigen::Index j = 0; j < 3; ++j)
     EXPECT_NEAR(response.slope_errors()[j], 0.5 * 0.1 * QuadraticResponse::usual_curvature, 1e-3);
-  EXPECT_EQ(response.rough_errors().norm(), 0);
+  EXPECT_EQ(response.rough_covariance().norm(), 0);
 }
 
 TEST(QuadraticResponse, ErrorsAreThoseOfRepeatedExperiments) {
@@ -58,7 +58,8 @@ TEST(QuadraticResponse, ErrorsAreThoseOfRepeatedExperiments) {
   const QuadraticResponse response(steps, roughness);
   std::mt19937_64 random(3);
   std::normal_distribution<double> normal;
-  Eigen::Vector3d all = Eigen::Vector3d::Zero(), rough = Eigen::Vector3d::Zero();
+  Eigen::Vector3d all = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d rough = Eigen::Matrix3d::Zero();
   constexpr int trials = 4000;
   for (int t = 0; t < trials; ++t) {
     // A response drawn from what the regression calls usual, then roughness, that of the base in common.
@@ -66,23 +67,32 @@ TEST(QuadraticResponse, ErrorsAreThoseOfRepeatedExperiments) {
     for (Eigen::Index a = 0; a < 3; ++a)
       for (Eigen::Index b = 0; b <= a; ++b)
         bend(a, b) = bend(b, a) = QuadraticResponse::usual_curvature * normal(random);
+    const Eigen::VectorXd third =
+        QuadraticResponse::usual_third_order / 6 * Eigen::VectorXd::NullaryExpr(27, [&] { return normal(random); });
     const double base = roughness * normal(random);
     Eigen::VectorXd noise(steps.rows()), bent(steps.rows());
     for (Eigen::Index i = 0; i < steps.rows(); ++i) {
       const Eigen::Vector3d step = steps.row(i);
       noise[i] = roughness * normal(random) - base;
       bent[i] = slopes.dot(step) + 0.5 * step.dot(bend * step);
+      for (Eigen::Index abc = 0; abc < 27; ++abc)
+        bent[i] += third[abc] * step[abc / 9] * step[abc / 3 % 3] * step[abc % 3];
     }
     const Eigen::Vector3d error = response.slopes(bent + noise) - slopes;
     all += error.cwiseAbs2() / trials;
-    rough += response.slopes(noise).cwiseAbs2() / trials;
+    rough += response.slopes(noise) * response.slopes(noise).transpose() / trials;
   }
-  for (Eigen::Index j = 0; j < 3; ++j) {
-    EXPECT_NEAR(std::sqrt(rough[j]) / response.rough_errors()[j], 1, 0.05);
-    // Third order is allowed for and absent here, so that the claim is on the safe side.
-    EXPECT_LT(std::sqrt(all[j]) / response.slope_errors()[j], 1.05);
-    EXPECT_GT(std::sqrt(all[j]) / response.slope_errors()[j], 0.75);
-  }
+  EXPECT_LT((rough - response.rough_covariance()).norm(), 0.06 * rough.norm());
+  for (Eigen::Index j = 0; j < 3; ++j) EXPECT_NEAR(std::sqrt(all[j]) / response.slope_errors()[j], 1, 0.05);
+}
+
+TEST(QuadraticResponse, IsSurprisedByMoreCurvatureThanUsual) {
+  const Eigen::MatrixXd steps = scattered(14, 0.3, 4);
+  const QuadraticResponse response(steps, 0);
+  EXPECT_LT(response.surprise(changes(steps)), 1.2);
+  EXPECT_NEAR(response.surprise(10 * changes(steps)) / response.surprise(20 * changes(steps)), 0.5, 1e-9);
+  EXPECT_GT(response.surprise(10 * changes(steps)), 3);
+  EXPECT_EQ(QuadraticResponse(steps.topRows(3), 0).surprise(10 * changes(steps.topRows(3))), 1);
 }
 
 TEST(QuadraticResponse, ClaimsNothingWithoutRuns) {
