@@ -7,8 +7,8 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "forward/scene/scene.hpp"
 #include "inverse/child_process.hpp"
+#include "inverse/scene_kind.hpp"
 #include "models/base/atomic_file.hpp"
 #include "models/base/error.hpp"
 
@@ -18,7 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t cuts_kept = 64;  // the runs at the final estimate are among the last of these
-constexpr const char* courant_number = "resolution.courant_number";
 
 void drop(const fs::path& file) {
   std::error_code ignored;
@@ -121,14 +120,16 @@ RunRecord ChildRuns::operator()(const RunRequest& request, const std::string& ke
     first.lost = first.record->refusals.empty() ? "its forces are not finite" : first.record->refusals.front();
 
   Document safer = request.scene;
-  safer.add_table("resolution", forward::scene_blocks());
-  const double courant = std::max(0.01, 0.5 * forward::read_scene(request.scene).resolution.courant_number);
-  safer.set_number(courant_number, courant, forward::scene_blocks());
+  const SceneKind kind = SceneKind::of(request.scene);
+  const std::string courant_path = kind.courant_path();
+  safer.add_table(courant_path.substr(0, courant_path.find('.')), kind.blocks());
+  const double courant = std::max(0.01, 0.5 * kind.courant_number(request.scene));
+  safer.set_number(courant_path, courant, kind.blocks());
   const std::string name = key + "-safer";
   Attempt second = attempt(safer, name, 2 * time_out);
   RunRecord record = second.record ? believed(std::move(*second.record)) : refused(second.lost);
   record.lost = !second.record;
-  record.retried = fmt::format("{}; again with {} = {:g}", first.lost, courant_number, courant);
+  record.retried = fmt::format("{}; again with {} = {:g}", first.lost, courant_path, courant);
   keep_cut(key, name);
   return record;
 }

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "forward/scene/scene.hpp"
+#include "inverse/scene_kind.hpp"
 #include "models/base/atomic_file.hpp"
 #include "models/base/error.hpp"
 
@@ -100,7 +101,7 @@ std::vector<RunRecord> RunDatabase::run(const std::vector<RunRequest>& requests)
     keys.push_back(key(request.scene));
     if (known_.contains(keys.back()) || !planned.insert(keys.back()).second) continue;
     try {
-      forward::read_scene(request.scene);
+      SceneKind::of(request.scene).check(request.scene);
       const Task task{keys.back(), &request};
       if (const std::optional<RunRecord> shared = shared_ ? shared_->find(task.key) : std::nullopt)
         remember(task, *shared);

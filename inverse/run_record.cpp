@@ -54,6 +54,22 @@ RunRecord summarise(const forward::CutResult& result) {
           .retried = {}};
 }
 
+RunRecord summarise(const forward::bodies::BodiesResult& result) {
+  RunRecord record;
+  record.accepted = result.accepted;
+  record.refusals = result.refusals;
+  record.wall_seconds = result.wall_seconds;
+  record.result = {{"results", result.measures}, {"cost", forward::bodies::cost_json(result)}};
+  return record;
+}
+
+double found_in(const RunRecord& record, const std::string& name) {
+  const Json::json_pointer place("/results/" + name);
+  return record.result.contains(place) && record.result.at(place).is_number()
+             ? record.result.at(place).get<double>()
+             : std::numeric_limits<double>::quiet_NaN();
+}
+
 double RunRecord::core_seconds() const {
   const Json::json_pointer place("/cost/processor_s");
   return result.contains(place) && result.at(place).is_number() ? result.at(place).get<double>() : 0;

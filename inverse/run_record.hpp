@@ -4,12 +4,14 @@
 #include <string>
 #include <vector>
 
+#include "forward/bodies/run.hpp"
 #include "forward/run.hpp"
 
 namespace kerf::inverse {
 
-/// What is remembered of one simulated cut: everything but its history and its picture. A run that failed is a value
-/// too (`accepted` false, `refusals` in words).
+/// What is remembered of one simulated cut: everything but its history and its picture. Of an experiment on bodies
+/// there are the verdict, `result` with what it is for and what it took, and nothing of a cut. A run that failed is a
+/// value too (`accepted` false, `refusals` in words).
 // NOLINTNEXTLINE(bugprone-exception-escape): that of the json, which its library declares not to throw
 struct RunRecord {
   Estimate F_c, F_t;        ///< N/mm
@@ -34,6 +36,10 @@ struct RunRecord {
 };
 
 RunRecord summarise(const forward::CutResult& result);
+RunRecord summarise(const forward::bodies::BodiesResult& result);
+
+/// What an experiment on bodies found under this name; NaN where it found no such thing.
+double found_in(const RunRecord& record, const std::string& name);
 
 /// G_R of a specimen's run where its crack has grown by `extension`, N/mm: what it took to grow on, linear between the
 /// cells that the crack passed. NaN where it did not grow that far, and of a run without an R-curve.

@@ -7,8 +7,8 @@
 #include <set>
 #include <stdexcept>
 
-#include "forward/scene/preset.hpp"
 #include "forward/scene/scene.hpp"
+#include "inverse/scene_kind.hpp"
 #include "inverse/sweep_axis.hpp"
 #include "models/base/error.hpp"
 #include "models/base/quantity.hpp"
@@ -16,12 +16,6 @@
 
 namespace kerf::inverse {
 namespace {
-
-constexpr const char* cells_path = "resolution.cells_through_chip";
-
-const std::vector<Block>& known() {
-  return forward::scene_blocks();
-}
 
 /// A value of a knob, and how it is written into a scene.
 struct Turn {
@@ -45,7 +39,7 @@ std::pair<std::string, std::string> split_path(const std::string& path) {
 /// What the scene has at a numeric path, its fallback included.
 std::optional<double> own_number(const Document& scene, const std::string& path) {
   const auto [block, key] = split_path(path);
-  const Contents contents = forward::with_preset(scene).read(known());
+  const Contents contents = SceneKind::of(scene).read(scene);
   if (!contents.has(block) || !contents.at(block).has(key)) return std::nullopt;
   return contents.at(block).number(key);
 }
@@ -84,7 +78,7 @@ std::optional<Turn> scaled(const SweepAxis& axis, double factor, const Document&
   for (const std::string& path : axis.paths) {
     const std::optional<double> own = own_number(scene, path);
     if (!own) return std::nullopt;
-    const Parameter& parameter = Document::find_number(path, known(), scene.name());
+    const Parameter& parameter = Document::find_number(path, SceneKind::of(scene).blocks(), scene.name());
     double value = factor * *own / consistent_units_in(parameter.unit);
     if (parameter.whole) value = std::round(value);
     turn.numbers.emplace_back(path, value * consistent_units_in(parameter.unit));
@@ -96,12 +90,12 @@ std::optional<Turn> scaled(const SweepAxis& axis, double factor, const Document&
 }
 
 /// Paths alone, so that their spelling is looked at by the one who knows: "-" is allowed for any key.
-SweepAxis parse_paths(const std::string& text, std::string_view where) {
-  SweepAxis axis = parse_axis(text.substr(0, text.find('=')) + "=-", known(), where);
+SweepAxis parse_paths(const std::string& text, const std::vector<Block>& known, std::string_view where) {
+  SweepAxis axis = parse_axis(text.substr(0, text.find('=')) + "=-", known, where);
   axis.values.clear();
   for (const std::string& path : axis.paths) {
     try {
-      const Parameter& parameter = Document::find_number(path, known(), where);
+      const Parameter& parameter = Document::find_number(path, known, where);
       axis.unit = axis.paths.size() > 1 ? "1" : parameter.unit;
     } catch (const InputError& error) {
       throw InputError(error.what(), ExitCode::usage);
@@ -123,8 +117,9 @@ void name(Knob& knob) {
 std::optional<Knob> read_knob(const std::string& text, const Document& scene, std::string_view where, bool is_default) {
   Knob knob;
   const std::vector<double> factors = read_factors(text, where);
+  const std::vector<Block>& known = SceneKind::of(scene).blocks();
   knob.scaled = !factors.empty();
-  knob.axis = knob.scaled ? parse_paths(text, where) : parse_axis(text, known(), where);
+  knob.axis = knob.scaled ? parse_paths(text, known, where) : parse_axis(text, known, where);
   name(knob);
   for (const double factor : factors) {
     std::optional<Turn> turn = scaled(knob.axis, factor, scene);
@@ -142,10 +137,11 @@ std::optional<Knob> read_knob(const std::string& text, const Document& scene, st
 }
 
 void write(const Knob& knob, const Turn& turn, Document& scene) {
-  if (turn.given) return apply(knob.axis, *turn.given, scene, known());
+  const std::vector<Block>& known = SceneKind::of(scene).blocks();
+  if (turn.given) return apply(knob.axis, *turn.given, scene, known);
   for (const auto& [path, number] : turn.numbers) {
-    if (const std::string block = split_path(path).first; !block.empty()) scene.add_table(block, known());
-    scene.set_number(path, number, known());
+    if (const std::string block = split_path(path).first; !block.empty()) scene.add_table(block, known);
+    scene.set_number(path, number, known);
   }
 }
 
@@ -183,56 +179,66 @@ Document reference_of(const Document& scene, const std::vector<std::string>& set
     axes.push_back(knob.axis);
   }
   for (const std::size_t k : order_of_writing(axes)) write(knobs[k], knobs[k].turns.front(), reference);
-  forward::read_scene(reference);
+  SceneKind::of(reference).check(reference);
   return reference;
 }
 
 }  // namespace
 
 // What a knob may change by itself, from the coarsest to the finest that a quarter of an hour allows.
-const std::vector<std::string>& default_knobs() {
-  static const std::vector<std::string> knobs{"resolution.cells_through_chip=x0.5,x0.75,x1.25,x1.5",
-                                              "cut.speed=x0.5,x2,x4",
-                                              "resolution.courant_number=x0.5,x1.25",
-                                              "pic_damping.rate=x0,x4",
-                                              "window.ahead+window.behind+window.below+window.above=x0.75,x1.5",
-                                              "resolution.cell_stretch=1,2,3",
-                                              "resolution.particles_per_cell_side=1,3",
-                                              "steady_state.tolerance=x0.25,x4",
-                                              "steady_state.not_before=x0.5,x1.5",
-                                              "preset=draft,standard,reference"};
-  return knobs;
+const std::vector<std::string>& default_knobs(const Document& scene) {
+  static const std::vector<std::string> of_cuts{"resolution.cells_through_chip=x0.5,x0.75,x1.25,x1.5",
+                                                "cut.speed=x0.5,x2,x4",
+                                                "resolution.courant_number=x0.5,x1.25",
+                                                "pic_damping.rate=x0,x4",
+                                                "window.ahead+window.behind+window.below+window.above=x0.75,x1.5",
+                                                "resolution.cell_stretch=1,2,3",
+                                                "resolution.particles_per_cell_side=1,3",
+                                                "steady_state.tolerance=x0.25,x4",
+                                                "steady_state.not_before=x0.5,x1.5",
+                                                "preset=draft,standard,reference"};
+  static const std::vector<std::string> of_bodies{"box.cell=x2,x1.5,x0.75",
+                                                  "box.particles_per_cell_side=1,3",
+                                                  "box.courant_number=x0.5,x1.5",
+                                                  "pic_damping.rate=x0,x4",
+                                                  "numerics.shape=uGIMP,linear",
+                                                  "numerics.transfer=PIC,APIC,XPIC",
+                                                  "numerics.stress_update=USF,USL,MUSL,USAVG"};
+  return SceneKind::of(scene).has_bodies ? of_bodies : of_cuts;
 }
 
-const std::vector<std::string>& default_reference() {
-  static const std::vector<std::string> settings{"resolution.cells_through_chip=x1.5", "cut.speed=x0.5",
-                                                 "steady_state.tolerance=x0.25"};
-  return settings;
+const std::vector<std::string>& default_reference(const Document& scene) {
+  static const std::vector<std::string> of_cuts{"resolution.cells_through_chip=x1.5", "cut.speed=x0.5",
+                                                "steady_state.tolerance=x0.25"};
+  static const std::vector<std::string> of_bodies{"box.cell=x0.5"};
+  return SceneKind::of(scene).has_bodies ? of_bodies : of_cuts;
 }
 
 std::vector<std::size_t> Study::resolutions() const {
   std::vector<std::size_t> found{as_it_is};
+  const std::string cell = SceneKind::of(scene).cell_path();
   for (std::size_t run = 0; run < runs.size(); ++run)
-    if (runs[run].knob && knobs[*runs[run].knob].paths == std::vector<std::string>{cells_path}) found.push_back(run);
+    if (runs[run].knob && knobs[*runs[run].knob].paths == std::vector<std::string>{cell}) found.push_back(run);
   return found;
 }
 
 Study lay_out_study(const Document& scene, const std::vector<std::string>& knobs,
                     const std::vector<std::string>& reference, std::string_view where) {
-  const forward::Scene as_it_is = forward::read_scene(scene);
-  if (as_it_is.grips)
+  const SceneKind kind = SceneKind::of(scene);
+  kind.check(scene);
+  if (!kind.has_bodies && forward::read_scene(scene).grips)
     throw InputError(fmt::format("{}: {}: a specimen in [grips] has no cutting force to study", where, scene.name()),
                      ExitCode::usage);
-  Study study{.scene = scene, .knobs = {}, .runs = {}};
+  Study study{.scene = scene, .knobs = {}, .result = {}, .runs = {}};
   const auto add = [&](std::optional<std::size_t> knob, std::string value, std::optional<double> number, Document run,
                        std::string label) {
     study.runs.push_back({knob, std::move(value), number, std::move(run), std::move(label)});
   };
-  add({}, "", {}, reference_of(scene, reference.empty() ? default_reference() : reference, where), "reference");
+  add({}, "", {}, reference_of(scene, reference.empty() ? default_reference(scene) : reference, where), "reference");
   add({}, "", {}, scene, "the scene as it is");
   const bool is_default = knobs.empty();
   std::set<std::string> studied;
-  for (const std::string& text : is_default ? default_knobs() : knobs) {
+  for (const std::string& text : is_default ? default_knobs(scene) : knobs) {
     const std::optional<Knob> knob = read_knob(text, scene, where, is_default);
     if (!knob) continue;
     for (const std::string& path : knob->axis.paths)
@@ -243,7 +249,7 @@ Study lay_out_study(const Document& scene, const std::vector<std::string>& knobs
       if (has_already(*knob, turn, scene)) continue;
       Document run = scene;
       write(*knob, turn, run);
-      if (!is_default) forward::read_scene(run);
+      if (!is_default) kind.check(run);
       add(study.knobs.size() - 1, turn.value, turn.number, std::move(run), label_of(*knob, turn));
     }
   }

@@ -30,6 +30,7 @@ struct Study {
 
   Document scene;
   std::vector<StudyKnob> knobs;
+  std::string result;          ///< of bodies: what is looked at, as the user named it; may be empty
   std::vector<StudyRun> runs;  ///< the reference, the scene as it is, then every value of every knob
 
   /// Runs that differ in the cell size alone, the scene as it is among them.
@@ -37,8 +38,8 @@ struct Study {
 };
 
 /// What is studied and what counts as exact when the command line does not say.
-const std::vector<std::string>& default_knobs();
-const std::vector<std::string>& default_reference();
+const std::vector<std::string>& default_knobs(const Document& scene);
+const std::vector<std::string>& default_reference(const Document& scene);
 
 /// Lays out a study of `scene`. A knob is written like an axis of a sweep (see parse_axis), or as factors of what the
 /// scene has, rounded where only whole numbers are allowed: window.ahead+window.behind=x0.75,x1.5. Values that the

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "forward/scene/scene.hpp"
+#include "inverse/scene_kind.hpp"
 #include "models/base/units.hpp"
 
 namespace kerf::inverse {
@@ -24,17 +25,8 @@ Json estimate(const Estimate& e, double factor, const char* unit) {
   return {{"value", finite(e.value * factor)}, {"se", finite(e.standard_error * factor)}, {"unit", unit}};
 }
 
-const char* verdict_of(const std::optional<RunRecord>& record) {
-  return !record ? "not run" : record->accepted ? "accepted" : "refused";
-}
-
 bool has_forces(const std::optional<RunRecord>& record) {
   return record && record->result.is_object();
-}
-
-std::string role_of(const Study& study, std::size_t run) {
-  if (study.runs[run].knob) return study.knobs[*study.runs[run].knob].short_name;
-  return run == Study::reference ? "reference" : "as it is";
 }
 
 Json convergence_json(const Convergence& found) {
@@ -66,6 +58,15 @@ Json precision_json(const WorkPrecision& p) {
 }
 
 }  // namespace
+
+const char* verdict_of(const std::optional<RunRecord>& record) {
+  return !record ? "not run" : record->accepted ? "accepted" : "refused";
+}
+
+std::string role_of(const Study& study, std::size_t run) {
+  if (study.runs[run].knob) return study.knobs[*study.runs[run].knob].short_name;
+  return run == Study::reference ? "reference" : "as it is";
+}
 
 StudyFindings study_findings(const Study& study, std::vector<std::optional<RunRecord>> records) {
   StudyFindings findings{.records = std::move(records), .precision = {}, .F_c = {}, .F_t = {}, .resolutions = {}};
@@ -135,16 +136,16 @@ std::vector<Column> study_columns(const Study& study, const StudyFindings& findi
   return columns;
 }
 
-Json study_json(const Study& study, const StudyFindings& findings, double wall_seconds, const Json& manifest) {
-  Json knobs = Json::array(), runs = Json::array(), resolutions = Json::array();
+Json study_frame_json(const Study& study, const std::vector<std::optional<RunRecord>>& records,
+                      const std::function<Json(std::size_t)>& error, double wall_seconds, const Json& manifest) {
+  Json knobs = Json::array(), runs = Json::array();
   for (const StudyKnob& knob : study.knobs)
     knobs.push_back({{"paths", knob.paths}, {"name", knob.short_name}, {"unit", knob.unit}});
   std::size_t finished = 0, accepted = 0;
   double core_seconds = 0;
   for (std::size_t run = 0; run < study.runs.size(); ++run) {
     const StudyRun& what = study.runs[run];
-    const std::optional<RunRecord>& record = findings.records[run];
-    const std::optional<WorkPrecision>& p = findings.precision[run];
+    const std::optional<RunRecord>& record = records[run];
     runs.push_back({{"run", run + 1},
                     {"role", what.knob                 ? "knob"
                              : run == Study::reference ? "reference"
@@ -155,25 +156,19 @@ Json study_json(const Study& study, const StudyFindings& findings, double wall_s
                     {"label", what.label},
                     {"verdict", verdict_of(record)},
                     {"refusals", record ? Json(record->refusals) : Json::array()},
-                    {"error", p ? precision_json(*p) : Json(nullptr)},
+                    {"error", error(run)},
                     {"result", record ? record->result : Json(nullptr)}});
     if (!record) continue;
     ++finished;
     accepted += record->accepted ? 1 : 0;
-    if (has_forces(record)) core_seconds += record->result.at("cost").value("processor_s", 0.0);
+    core_seconds += record->core_seconds();
   }
-  for (const std::size_t run : findings.resolutions)
-    resolutions.push_back({{"run", run + 1}, {"cell", forward::read_scene(study.runs[run].scene).cell()}});
   return {{"kind", "study"},
-          {"title", forward::read_scene(study.scene).title},
+          {"title", SceneKind::of(study.scene).title(study.scene)},
           {"complete", finished == study.runs.size()},
           {"knobs", std::move(knobs)},
           {"runs", std::move(runs)},
-          {"convergence",
-           {{"resolutions", std::move(resolutions)},
-            {"cell_unit", "mm"},
-            {"F_c", convergence_json(findings.F_c)},
-            {"F_t", convergence_json(findings.F_t)}}},
+          {"convergence", nullptr},
           {"cost",
            {{"runs", study.runs.size()},
             {"finished", finished},
@@ -182,6 +177,22 @@ Json study_json(const Study& study, const StudyFindings& findings, double wall_s
             {"core_s", core_seconds},
             {"wall_s", wall_seconds}}},
           {"manifest", manifest}};
+}
+
+Json study_json(const Study& study, const StudyFindings& findings, double wall_seconds, const Json& manifest) {
+  const auto error = [&](std::size_t run) {
+    const std::optional<WorkPrecision>& p = findings.precision[run];
+    return p ? precision_json(*p) : Json(nullptr);
+  };
+  Json json = study_frame_json(study, findings.records, error, wall_seconds, manifest);
+  Json resolutions = Json::array();
+  for (const std::size_t run : findings.resolutions)
+    resolutions.push_back({{"run", run + 1}, {"cell", forward::read_scene(study.runs[run].scene).cell()}});
+  json["convergence"] = {{"resolutions", std::move(resolutions)},
+                         {"cell_unit", "mm"},
+                         {"F_c", convergence_json(findings.F_c)},
+                         {"F_t", convergence_json(findings.F_t)}};
+  return json;
 }
 
 }  // namespace kerf::inverse

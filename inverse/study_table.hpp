@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <vector>
@@ -26,5 +27,13 @@ std::vector<Column> study_columns(const Study& study, const StudyFindings& findi
 
 nlohmann::ordered_json study_json(const Study& study, const StudyFindings& findings, double wall_seconds,
                                   const nlohmann::ordered_json& manifest);
+
+/// What studies of cuts and of bodies have in common: knobs, runs with what `error` says of each, and costs.
+nlohmann::ordered_json study_frame_json(const Study& study, const std::vector<std::optional<RunRecord>>& records,
+                                        const std::function<nlohmann::ordered_json(std::size_t run)>& error,
+                                        double wall_seconds, const nlohmann::ordered_json& manifest);
+const char* verdict_of(const std::optional<RunRecord>& record);
+/// What a run is for: the name of the knob that was turned, "reference" or "as it is".
+std::string role_of(const Study& study, std::size_t run);
 
 }  // namespace kerf::inverse

@@ -8,7 +8,7 @@
 #include <optional>
 #include <set>
 
-#include "forward/scene/scene.hpp"
+#include "inverse/scene_kind.hpp"
 #include "models/base/error.hpp"
 
 namespace kerf::inverse {
@@ -60,7 +60,7 @@ void refuse_shared_paths(const std::vector<SweepAxis>& axes, std::string_view wh
 /// Why the scene cannot be read, if so.
 std::optional<InputError> refusal_of(const Document& scene) {
   try {
-    forward::read_scene(scene);
+    SceneKind::of(scene).check(scene);
     return std::nullopt;
   } catch (const InputError& error) {
     return error;
@@ -86,8 +86,9 @@ void refuse_hopeless_values(const Sweep& sweep) {
 }  // namespace
 
 Sweep lay_out_sweep(const Document& scene, const std::vector<std::string>& axes, bool zip, std::string_view where) {
-  const std::vector<Block>& known = forward::scene_blocks();
-  forward::read_scene(scene);
+  const SceneKind kind = SceneKind::of(scene);
+  const std::vector<Block>& known = kind.blocks();
+  kind.check(scene);
   Sweep sweep{.scene = scene, .axes = {}, .zip = zip, .runs = {}};
   for (const std::string& axis : axes) sweep.axes.push_back(parse_axis(axis, known, where, zip));
   if (sweep.axes.empty()) throw InputError(fmt::format("{}: nothing to sweep", where), ExitCode::usage);

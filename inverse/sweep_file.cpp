@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "forward/record/hdf5.hpp"
-#include "forward/scene/scene.hpp"
+#include "inverse/scene_kind.hpp"
 
 namespace kerf::inverse {
 namespace {
@@ -52,7 +52,7 @@ void copy_history(hid_t runs, const fs::path& cut_file, const std::string& name)
 
 void write_h5(hid_t h5, const Sweep& sweep, const std::vector<Column>& columns,
               const std::vector<fs::path>& cut_files) {
-  write_attribute(h5, "title", forward::read_scene(sweep.scene).title);
+  write_attribute(h5, "title", SceneKind::of(sweep.scene).title(sweep.scene));
   write_attribute(h5, "code_version", KERF_VERSION);
   write_attribute(h5, "scene", sweep.scene.canonical());
   {

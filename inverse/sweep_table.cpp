@@ -10,6 +10,7 @@
 
 #include "forward/scene/scene.hpp"
 #include "inverse/reduction_json.hpp"
+#include "inverse/scene_kind.hpp"
 #include "models/base/units.hpp"
 
 namespace kerf::inverse {
@@ -72,11 +73,16 @@ std::vector<Leaf> leaves_of(const std::optional<RunRecord>& record) {
   if (!record) return leaves;
   if (record->result.is_object()) {
     collect(record->result, "", leaves);
-    leaves.push_back({"F_t_over_F_c", "1",
-                      finite(number_at(record->result, "/F_t/value") / number_at(record->result, "/F_c/value"))});
-    leaves.push_back(
-        {"residue_share", "1",
-         finite(number_at(record->result, "/ledger/residue") / number_at(record->result, "/ledger/tool_work"))});
+    constexpr std::string_view of_bodies = "results.";
+    for (Leaf& leaf : leaves)
+      if (leaf.name.starts_with(of_bodies)) leaf.name.erase(0, of_bodies.size());
+    if (record->result.contains("F_c")) {
+      leaves.push_back({"F_t_over_F_c", "1",
+                        finite(number_at(record->result, "/F_t/value") / number_at(record->result, "/F_c/value"))});
+      leaves.push_back(
+          {"residue_share", "1",
+           finite(number_at(record->result, "/ledger/residue") / number_at(record->result, "/ledger/tool_work"))});
+    }
     // One simulation keeps one core busy.
     leaves.push_back({"core_seconds", "s", finite(number_at(record->result, "/cost/processor_s"))});
   }
@@ -189,7 +195,9 @@ std::vector<Column> sweep_columns(const Sweep& sweep, const SweepRecords& record
   fixed.push_back({.name = "verdict", .unit = "1", .cells = {}});
   for (const auto& record : records) fixed.back().cells.emplace_back(verdict_of(record));
 
-  for (const char* name : leading) found.push_back({.name = name, .unit = "1", .cells = std::vector<Json>(count)});
+  const bool has_bodies = SceneKind::of(sweep.scene).has_bodies;
+  for (const char* name : leading)
+    if (!has_bodies) found.push_back({.name = name, .unit = "1", .cells = std::vector<Json>(count)});
   for (std::size_t run = 0; run < count; ++run)
     for (Leaf& leaf : leaves_of(records[run])) {
       auto column = std::find_if(found.begin(), found.end(), [&](const auto& c) { return c.name == leaf.name; });
@@ -243,7 +251,8 @@ Json sweep_json(const Sweep& sweep, const SweepRecords& records, const std::vect
   }
   for (const SweepIntercepts& line : intercepts) lines.push_back(intercepts_json(line));
   return {{"kind", "sweep"},
-          {"title", forward::read_scene(sweep.scene).title},
+          {"title", SceneKind::of(sweep.scene).title(sweep.scene)},
+          {"bodies", SceneKind::of(sweep.scene).has_bodies},
           {"complete", finished == sweep.runs.size()},
           {"axes", std::move(axes)},
           {"zip", sweep.zip},

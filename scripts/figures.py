@@ -15,10 +15,11 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "scripts"))
 import numpy as np  # noqa: E402
 from matplotlib.patches import Circle, Polygon  # noqa: E402
+from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator  # noqa: E402
 from PIL import Image  # noqa: E402
 from report.bodies import draw_pressed, draw_velocity, read_bodies  # noqa: E402
 from report.cut import fill_between_particles, read_cut, tool_outlines  # noqa: E402
-from report.study import draw_work_precision, legend_of, read_study  # noqa: E402
+from report.study import draw_error_against_cell, draw_work_precision, legend_of, read_study  # noqa: E402
 from report.style import ACCENT, INK, QUIET, SAND, STRAIN, WARM, figure, light_grid  # noqa: E402
 
 # What the paper prints (Nairn 2016): forces in J/m^2 against depth in mm for a chip breaker and a mouth of 1.2 mm.
@@ -329,6 +330,12 @@ def bodies(results):
             panel.plot(x[part], y[part], color=colours[stroke - 1], linewidth=2,
                        label=f"{'isothermal' if stroke % 2 else 'adiabatic'} {'out' if stroke < 3 else 'back'}")
     axes[0, 0].set(title="ideal gas, Carnot cycle", xlabel="volume / first volume", ylabel="pressure, MPa")
+    axes[0, 0].set_xscale("log")
+    axes[0, 0].set_yscale("log")
+    for axis, ticks in ((axes[0, 0].xaxis, (1, 2, 5, 10)), (axes[0, 0].yaxis, (0.05, 0.1, 0.2, 0.5, 1))):
+        axis.set_major_locator(FixedLocator(ticks))
+        axis.set_minor_locator(NullLocator())
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axes[0, 0].legend(frameon=False)
     axes[0, 1].set(title="the same cycle", xlabel="entropy, µJ/(mm K)", ylabel="temperature, K")
 
@@ -340,7 +347,7 @@ def bodies(results):
     ls = np.linspace(1, 3, 100)
     w = 0.2 * (ls**2 + 2 / ls - 3) + 0.02 * (2 * ls + 1 / ls**2 - 3)
     axes[1, 0].plot(ls, 293 * np.expm1(w / (930e-12 * 1.9e9 * 293)), color=INK, linestyle=":", label="closed form")
-    axes[1, 0].set(title="ideal rubber", xlabel="stretch", ylabel="temperature rise, K")
+    axes[1, 0].set(title="ideal rubber", xlabel="stretch", ylabel="temperature rise, K", xlim=(0.97, 3.03))
     axes[1, 0].legend(frameon=False)
 
     glue = [experiment(results, file.stem)[0] for file in results.glob("interface_bar_*.json")]
@@ -356,6 +363,11 @@ def bodies(results):
     return fig
 
 
+def large_number(value):
+    exponent = int(np.floor(np.log10(value)))
+    return f"{value:g}" if exponent < 4 else f"{value / 10**exponent:g}·10$^{exponent}$"
+
+
 def layers(results):
     """A laminate at every angle, and Carnot's cycle of a metal that yields beside one that does not."""
     fig, axes = figure(980, 360, 1, 2)
@@ -364,7 +376,7 @@ def layers(results):
         mine = [one for one in found if one["interface_stiffness"] == D]
         angles = [one["interface_angle"] for one in mine]
         axes[0].plot(angles, [one["effective_modulus"] for one in mine], "o", color=colour,
-                     label=f"D = {D:.0e} MPa/mm")
+                     label=f"D = {large_number(D)} MPa/mm")
         axes[0].plot(angles, [one["closed_form_modulus"] for one in mine], "_", color=colour, markersize=22,
                      markeredgewidth=1.5)
     axes[0].set(title="laminate pulled askew (dashes: closed form)", xlabel="angle from the layers' normal to the pull, deg",
@@ -406,12 +418,25 @@ def work_precision(results):
     return fig
 
 
+def bodies_precision(results):
+    """Error of a bar's frequency against cost, one knob at a time, and against the cell."""
+    study = read_study(results / "study_bar")
+    fig, axes = figure(1010, 400, 1, 2, width_ratios=[3, 2])
+    draw_work_precision(axes[0], study)
+    axes[0].set(title="a vibrating bar", ylabel="frequency off by, %")
+    axes[0].legend(handles=legend_of([study]), loc="upper left", bbox_to_anchor=(1.01, 1), borderaxespad=0, fontsize=9.5)
+    draw_error_against_cell(axes[1], study)
+    axes[1].set(title="cells alone")
+    return fig
+
+
 # A figure and the result without which it cannot be drawn.
 FIGURES = {"plane_chips": (chips, "plane_mouth"), "talk_forces": (talk, "talk"), "talk_effects": (effects, "talk_rake"),
            "bottom_force": (bottom, "talk_edge"), "wood_forces": (wood, "wood_rl"), "plane_forces": (plane, "plane_m12"),
            "laws": (laws, "laws"), "work_precision": (work_precision, "study_polymer"),
            "veneer": (veneer, "veneer.h5"), "contact": (contact, "hertz.json"),
-           "bodies": (bodies, "carnot_gas.json"), "layers": (layers, "laminate_45_30.json")}
+           "bodies_precision": (bodies_precision, "study_bar"), "bodies": (bodies, "carnot_gas.json"),
+           "layers": (layers, "laminate_45_30.json")}
 
 
 def main():

@@ -46,6 +46,9 @@ study study_wood wood_rl resolution.cells_through_chip=x0.75,x1.25 cut.speed=x2,
   pic_damping.rate=x0,x4 window.ahead+window.behind+window.below+window.above=x0.75 resolution.cell_stretch=3 \
   steady_state.not_before=x0.5 preset=draft --reference resolution.cells_through_chip=x1.5
 
+study study_bar vibrating_bar box.cell=x2,x0.5 box.particles_per_cell_side=1,3 box.courant_number=x0.5,x1.5 \
+  numerics.shape=uGIMP,linear numerics.transfer=PIC,APIC,XPIC numerics.stress_update=USF,USL,MUSL --reference box.cell=x0.25
+
 build/release/kerf simulate "$scenes/veneer.toml" -o results/experiments/veneer.h5
 
 # The same particles as an engine, a rubber band and a glued bar.

@@ -330,6 +330,28 @@ void hertz(const BodiesResult& result, const Scene& scene, Json& json) {
   json["cells_in_half_width"] = expected_width / cell;
 }
 
+/// A bar that begins as a standing wave, read between the crossings of its centre's velocity.
+void vibration(const BodiesResult& result, const Scene& scene, Json& json) {
+  const BodyPlan& bar = scene.bodies.front();
+  if (!(bar.wavelength > 0.0)) return;
+  std::vector<double> crossings;
+  for (std::size_t i = 1; i < result.history.size(); ++i) {
+    const Reading &a = result.history[i - 1], &b = result.history[i];
+    if ((a.velocity_x > 0.0) == (b.velocity_x > 0.0)) continue;
+    crossings.push_back(a.time + (b.time - a.time) * a.velocity_x / (a.velocity_x - b.velocity_x));
+  }
+  if (crossings.size() < 2) return;
+  const double found = 0.5 * static_cast<double>(crossings.size() - 1) / (crossings.back() - crossings.front());
+  const bool held = scene.walls[top] == Wall::roller && scene.walls[bottom] == Wall::roller;
+  const double density = std::visit([](const auto& law) { return law.mass_density(); }, bar.law);
+  const double expected = std::sqrt(bar_modulus(bar.law, held) / density) / bar.wavelength;
+  const Reading& end = result.history.back();
+  json["frequency"] = found;
+  json["closed_form_frequency"] = expected;
+  json["frequency_error"] = std::abs(found / expected - 1.0);
+  json["energy_error"] = std::abs((end.kinetic + end.internal) / end.start_kinetic - 1.0);
+}
+
 }  // namespace
 
 Json measure(const BodiesResult& result, const Scene& scene) {
@@ -355,6 +377,9 @@ Json measure(const BodiesResult& result, const Scene& scene) {
         break;
       case Measure::rubbing:
         rubbing(result, scene, json);
+        break;
+      case Measure::vibration:
+        vibration(result, scene, json);
         break;
       case Measure::hertz:
         hertz(result, scene, json);

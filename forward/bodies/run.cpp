@@ -8,6 +8,7 @@
 #include "forward/bodies/measures.hpp"
 #include "forward/bodies/step.hpp"
 #include "forward/bodies/totals.hpp"
+#include "forward/record/stage_clock.hpp"
 
 namespace kerf::forward::bodies {
 namespace {
@@ -163,6 +164,7 @@ BodiesResult run(const Scene& scene, const std::function<bool(std::size_t, doubl
   State state = lay_out(scene);
   Joint joint(state, scene);
   const std::vector<Stage> stages = plan(scene, joint);
+  StageClock clock(stages);
   Recorder recorder(state, scene);
   for (const Body& body : state.bodies) result.particles += body.points.size();
   const double spacing = scene.length / readings_per_length;
@@ -182,7 +184,7 @@ BodiesResult run(const Scene& scene, const std::function<bool(std::size_t, doubl
         state.contact.pressed = {.impulse = {}, .since = state.time};
       const double towards = stroke.ramp > 0.0 ? 1.0 - std::exp(-state.step / stroke.ramp) : 1.0;
       state.piston.speed += towards * (stroke.speed - state.piston.speed);
-      for (const Stage& stage : stages) stage.apply(state, stroke);
+      clock.step(state, stroke);
       recorder.add_step(state);
       result.particle_steps += static_cast<std::int64_t>(result.particles);
       if (result.steps == 0) result.first_step_temperature_change = totals(state).temperature - start_temperature;
@@ -214,8 +216,17 @@ BodiesResult run(const Scene& scene, const std::function<bool(std::size_t, doubl
     result.refusals.push_back(
         fmt::format("broke down after {:.3g} ms: {}{}", 1e3 * state.time, state.breakdown, remedy(scene)));
   result.accepted = result.refusals.empty();
+  result.processor_seconds = clock.processor_seconds();
   result.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return result;
+}
+
+nlohmann::ordered_json cost_json(const BodiesResult& result) {
+  return {{"wall_s", result.wall_seconds},
+          {"processor_s", result.processor_seconds},
+          {"steps", result.steps},
+          {"particles", result.particles},
+          {"particle_steps", result.particle_steps}};
 }
 
 nlohmann::ordered_json result_json(const BodiesResult& result, const Scene& scene) {
@@ -261,10 +272,7 @@ nlohmann::ordered_json result_json(const BodiesResult& result, const Scene& scen
   }
   json["units"] = {{"time", "s"},        {"length", "mm"},        {"force", "N/mm"},         {"stress", "MPa"},
                    {"temperature", "K"}, {"energies", "N mm/mm"}, {"entropy", "N mm/(mm K)"}};
-  json["cost"] = {{"wall_s", result.wall_seconds},
-                  {"steps", result.steps},
-                  {"particles", result.particles},
-                  {"particle_steps", result.particle_steps}};
+  json["cost"] = cost_json(result);
   return json;
 }
 

@@ -39,6 +39,7 @@ struct BodiesResult {
   std::vector<std::string> refusals;
   std::int64_t steps = 0, particle_steps = 0;
   double wall_seconds = 0;
+  double processor_seconds = 0;  ///< of the thread that simulates
   std::size_t particles = 0;
   struct Pressure {
     double x, y, force;  ///< of a node, mm; N/mm, mean over the last half of the last stroke
@@ -50,6 +51,9 @@ struct BodiesResult {
 /// Runs all strokes. Thread-safe and deterministic. `progress` is told the stroke and the stretch now and then; false
 /// stops the run, which is then refused as "interrupted".
 BodiesResult run(const Scene& scene, const std::function<bool(std::size_t stroke, double stretch)>& progress = {});
+
+/// What the run took.
+nlohmann::ordered_json cost_json(const BodiesResult& result);
 
 /// The result as `kerf simulate --json` prints it.
 nlohmann::ordered_json result_json(const BodiesResult& result, const Scene& scene);

@@ -79,9 +79,9 @@ struct Contact {
 };
 
 /// What to read off the run: see bodies/measures.
-enum class Measure { cycle, rubber, expansion, modulus, sliding, hertz, rubbing, wedge };
-inline constexpr std::array<const char*, 8> measure_names{"cycle",   "rubber", "expansion", "modulus",
-                                                          "sliding", "hertz",  "rubbing",   "wedge"};
+enum class Measure { cycle, rubber, expansion, modulus, sliding, hertz, rubbing, wedge, vibration };
+inline constexpr std::array<const char*, 9> measure_names{"cycle", "rubber",  "expansion", "modulus",  "sliding",
+                                                          "hertz", "rubbing", "wedge",     "vibration"};
 
 struct Scene {
   std::string title;

@@ -1,6 +1,7 @@
 #include <memory>
 #include <string>
 
+#include "forward/bodies/run.hpp"
 #include "forward/record/cut_file.hpp"
 #include "forward/scene/scene.hpp"
 #include "inverse/commands/commands.hpp"
@@ -22,6 +23,11 @@ void add_run(CLI::App& app, int&) {
   command->callback([options] {
     if (std::filesystem::exists(options->record)) return;  // a requeued job whose work is done
     const Document document = Document::load(options->scene);
+    if (forward::bodies::has_bodies(document)) {
+      const forward::bodies::BodiesResult result = forward::bodies::run(forward::bodies::read_scene(document));
+      write_atomically(options->record, inverse::to_json(inverse::summarise(result)).dump() + "\n");
+      return;
+    }
     const forward::CutResult result = forward::run(forward::read_scene(document));
     // The record first: HDF5 does not survive a full disk, and a run is known by its record.
     write_atomically(options->record, inverse::to_json(inverse::summarise(result)).dump() + "\n");

@@ -10,12 +10,14 @@
 #include <numeric>
 #include <utility>
 
+#include "forward/bodies/state.hpp"
 #include "forward/record/cut_file.hpp"
 #include "inverse/child_runs.hpp"
 #include "inverse/commands/draw_report.hpp"
 #include "inverse/commands/expected_cost.hpp"
 #include "inverse/commands/interrupt.hpp"
 #include "inverse/manifest.hpp"
+#include "inverse/scene_kind.hpp"
 #include "models/base/units.hpp"
 
 namespace kerf::commands {
@@ -27,12 +29,25 @@ using inverse::RunRequest;
 using inverse::SceneFolder;
 using nlohmann::ordered_json;
 
+/// Of bodies as many as their longest strokes take with the step that they begin with; a stroke that waits for a
+/// condition is taken to go once round the box.
+double most_particle_steps(const Document& scene) {
+  if (!inverse::SceneKind::of(scene).has_bodies) return expected_cost(forward::read_scene(scene)).most;
+  const forward::bodies::Scene bodies = forward::bodies::read_scene(scene);
+  const forward::bodies::State state = forward::bodies::lay_out(bodies);
+  double time = 0, points = 0;
+  for (const forward::bodies::Stroke& stroke : bodies.strokes)
+    time += std::min(stroke.longest, bodies.length / std::abs(stroke.speed));
+  for (const forward::bodies::Body& body : state.bodies) points += static_cast<double>(body.points.size());
+  return points * time / state.step;
+}
+
 /// Particle-steps that each run may take at most; 0 for a scene that its reader refuses.
 std::vector<double> largest_costs(const std::vector<RunRequest>& runs) {
   std::vector<double> costs;
   for (const RunRequest& run : runs) {
     try {
-      costs.push_back(expected_cost(forward::read_scene(run.scene)).most);
+      costs.push_back(most_particle_steps(run.scene));
     } catch (const InputError&) {
       costs.push_back(0);
     }
@@ -62,7 +77,8 @@ class Progress {
   void run_ends(std::size_t run, const RunRequest& request, const RunRecord& record) {
     const double one = consistent_units_in("N/m");
     const std::string outcome =
-        record.accepted
+        record.accepted && inverse::SceneKind::of(request.scene).has_bodies ? "accepted"
+        : record.accepted
             ? fmt::format("F_c {:.0f}, F_t {:.0f} N/m, {}", record.F_c.value / one, record.F_t.value / one,
                           forward::name(record.branch))
             : "refused: " + (record.refusals.empty() ? std::string("no reason given") : record.refusals.front());
@@ -215,6 +231,16 @@ void draw(const fs::path& folder) {
 }
 
 void print_cost(const std::vector<RunRequest>& runs, int jobs) {
+  if (!runs.empty() && inverse::SceneKind::of(runs.front().scene).has_bodies) {
+    const std::vector<double> costs = largest_costs(runs);
+    for (std::size_t run = 0; run < runs.size(); ++run)
+      fmt::print("{:>5}  {}  {}\n", run + 1,
+                 costs[run] > 0 ? fmt::format("about {:<8.2g} particle-steps", costs[run]) : "refused by its reader",
+                 runs[run].label);
+    fmt::print("{} runs, about {:.2g} particle-steps; `kerf explain` tells their pace\n", runs.size(),
+               std::accumulate(costs.begin(), costs.end(), 0.0));
+    return;
+  }
   double least = 0, most = 0, longest = 0;
   std::optional<forward::Scene> dearest;
   std::size_t refused = 0;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <optional>
@@ -9,6 +10,7 @@
 #include "inverse/commands/interrupt.hpp"
 #include "inverse/commands/scene_session.hpp"
 #include "inverse/reduction_json.hpp"
+#include "inverse/scene_kind.hpp"
 #include "inverse/sweep_file.hpp"
 #include "inverse/sweep_table.hpp"
 #include "models/base/atomic_file.hpp"
@@ -59,6 +61,32 @@ void print_table(const Sweep& sweep, const SweepRecords& records) {
                            "G/G_c", "residue[%]", "core-s", "verdict"})
     rows.front().emplace_back(head);
   for (std::size_t run = 0; run < records.size(); ++run) rows.push_back(cells_of(sweep, run, records[run]));
+  print_columns(rows);
+}
+
+/// Of bodies: what every run found.
+void print_bodies(const Sweep& sweep, const SweepRecords& records) {
+  std::vector<std::string> names;
+  for (const std::optional<RunRecord>& record : records)
+    if (record && record->result.contains("results") && record->result.at("results").is_object())
+      for (const auto& [name, value] : record->result.at("results").items())
+        if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  std::vector<std::vector<std::string>> rows{{"run"}};
+  for (const SweepAxis& axis : sweep.axes)
+    rows.front().push_back(axis.unit == "1" ? axis.short_name : fmt::format("{}[{}]", axis.short_name, axis.unit));
+  rows.front().insert(rows.front().end(), names.begin(), names.end());
+  rows.front().insert(rows.front().end(), {"core-s", "verdict"});
+  for (std::size_t run = 0; run < records.size(); ++run) {
+    const std::optional<RunRecord>& record = records[run];
+    std::vector<std::string>& row = rows.emplace_back(1, fmt::format("{}", run + 1));
+    for (std::size_t a = 0; a < sweep.axes.size(); ++a) row.push_back(sweep.value(sweep.runs[run], a).text);
+    for (const std::string& name : names) {
+      const double found = record ? inverse::found_in(*record, name) : std::nan("");
+      row.push_back(std::isfinite(found) ? fmt::format("{:.5g}", found) : "");
+    }
+    row.push_back(record ? plain(record->core_seconds(), 2) : "");
+    row.emplace_back(!record ? "not run" : record->accepted ? "accepted" : "refused");
+  }
   print_columns(rows);
 }
 
@@ -117,7 +145,10 @@ ExitCode run_sweep(SceneFolder& folder, const Sweep& sweep, const std::string& c
   if (json) {
     fmt::print("{}\n", result.dump(2));
   } else {
-    print_table(sweep, outcome.records);
+    if (inverse::SceneKind::of(sweep.scene).has_bodies)
+      print_bodies(sweep, outcome.records);
+    else
+      print_table(sweep, outcome.records);
     print_refusals(outcome);
     for (const SweepIntercepts& line : intercepts) print_intercepts(line);
   }

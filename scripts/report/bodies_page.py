@@ -8,7 +8,7 @@ UNITS = {"heat_taken": "N", "work_given": "N", "first_step_temperature_change": 
          "highest_temperature": "K", "adiabatic_temperature_rise": "K", "effective_modulus": "MPa", "perfect_modulus": "MPa",
          "closed_form_modulus": "MPa", "interface_stiffness": "MPa/mm", "acceleration": "m/s²",
          "closed_form_acceleration": "m/s²", "force": "N/mm", "half_width": "mm", "closed_form_half_width": "mm",
-         "peak_pressure": "MPa", "closed_form_peak_pressure": "MPa"}
+         "peak_pressure": "MPa", "closed_form_peak_pressure": "MPa", "frequency": "Hz", "closed_form_frequency": "Hz"}
 
 
 def _with_unit(name, value):

@@ -18,7 +18,9 @@ NAMES = {"resolution.cells_through_chip": "cells through the chip", "cut.speed":
          "resolution.courant_number": "time step (CFL)", "pic_damping.rate": "PIC damping", "window.ahead": "window",
          "resolution.cell_stretch": "cell stretch", "resolution.particles_per_cell_side": "particles per cell side",
          "steady_state.tolerance": "tolerance of F_c", "steady_state.not_before": "least travel",
-         "preset": "preset"}
+         "preset": "preset", "box.cell": "cell", "box.particles_per_cell_side": "particles per cell side",
+         "box.courant_number": "time step (CFL)", "numerics.shape": "shape functions", "numerics.transfer": "transfer",
+         "numerics.stress_update": "stress update"}
 COLOURS = [ACCENT, WARM, "#4a78b5", "#8a5a83", "#7d8b2f", "#c2922e", "#7fb3b3", "#e0a884", "#8d9aa0", "#3c4f76"]
 PRESET = "preset"
 
@@ -31,6 +33,11 @@ class Study:
     @property
     def of_job(self):
         return "presets" in self.result
+
+    @property
+    def looked_at(self):
+        """Of bodies: the number that is looked at; None of cuts."""
+        return (self.result.get("bodies") or {}).get("result")
 
     @property
     def knobs(self):
@@ -92,9 +99,10 @@ def work_precision(study):
         return None
     fig, ax = figure(860, 520)
     draw_work_precision(ax, study)
-    ax.set_ylabel("error of the force, % of F_c")
+    ax.set_ylabel("error of the force, % of F_c" if study.looked_at is None else
+                  f"{study.looked_at.removesuffix('_error').replace('_', ' ')}: off by, %")
     ax.legend(handles=legend_of([study]), loc="upper left", bbox_to_anchor=(1.01, 1), borderaxespad=0)
-    return svg(fig, "error of the force against core-seconds for every value of every knob")
+    return svg(fig, "error against core-seconds for every value of every knob")
 
 
 def draw_work_precision(ax, study):
@@ -116,13 +124,16 @@ def draw_work_precision(ax, study):
             ax.plot(*np.array(sorted(places)).T, color=colour, linewidth=1, alpha=0.55, zorder=2)
         for run in runs:
             _draw_run(ax, run, colour, "D" if preset else "o")
-            _label(ax, run, run["value"].replace("x ", "×"), colour, below=preset)
+            _label(ax, run, run["value"].replace("x ", "×"), colour, below=preset,
+                   turned=not finite(run["number"]) and not preset)
+    if study.looked_at is not None:
+        _draw_run(ax, study.reference, INK, "D")  # held against a closed form, it is a run like others
     if cost := core_seconds(study.reference):
         ax.axvline(cost, color=QUIET, linewidth=0.9, linestyle=(0, (2, 2)), zorder=1)
         ax.annotate("reference run", (cost, 0), xycoords=("data", "axes fraction"), xytext=(-4, 6), rotation=90,
                     textcoords="offset points", ha="right", fontsize=9, color=QUIET)
     _draw_run(ax, base, INK, "s")
-    _label(ax, base, "as it is", INK)
+    _label(ax, base, "as it is", INK, below=study.looked_at is not None)
     number = FuncFormatter(lambda value, _: f"{value:g}")
     for axis in (ax.xaxis, ax.yaxis):
         axis.set_major_formatter(number)
@@ -153,13 +164,14 @@ def _draw_run(ax, run, colour, marker):
                 markeredgewidth=1.4, elinewidth=0.9, capsize=0, alpha=1, zorder=5 if marker != "o" else 3)
 
 
-def _label(ax, run, text, colour, below=False):
-    """Above to the right; presets, in bold, below to the left."""
+def _label(ax, run, text, colour, below=False, turned=False):
+    """Above to the right, words turned out of each other's way; presets, in bold, below to the left."""
     cost, error = core_seconds(run), _error(run)
     if cost and error:
         ax.annotate(text, (cost, error[0]), xytext=(-5, -15) if below else (6, 4), textcoords="offset points",
                     ha="right" if below else "left", color=colour, fontsize=10.5 if below else 9.5,
-                    fontweight="bold" if below else "normal", zorder=6,
+                    fontweight="bold" if below else "normal", zorder=6, rotation=50 if turned else 0,
+                    rotation_mode="anchor",
                     path_effects=[withStroke(linewidth=2.5, foreground="white", alpha=0.8)])
 
 
@@ -193,6 +205,8 @@ def legend_of(studies):
 
 def convergence(study):
     """Force against cell size, the fitted power law and its limit for vanishing cells."""
+    if study.looked_at is not None:
+        return _error_against_cell(study)
     found = study.result["convergence"]
     if len(found["resolutions"]) < 2:
         return None
@@ -225,6 +239,34 @@ def convergence(study):
         ax.set_ylim(min(values) - reach, max(values) + reach)
         ax.yaxis.set_major_locator(MaxNLocator(6))
     return svg(fig, "force against cell size with its limit")
+
+
+def _error_against_cell(study):
+    found = study.result["convergence"]
+    if len(found["resolutions"]) < 2:
+        return None
+    fig, ax = figure(430, 330)
+    draw_error_against_cell(ax, study)
+    return svg(fig, "error against cell size")
+
+
+def draw_error_against_cell(ax, study):
+    """Of a study of bodies."""
+    found = study.result["convergence"]
+    light_grid(ax)
+    cells = np.array([entry["cell"] for entry in found["resolutions"]])
+    errors = np.array([entry["error"] for entry in found["resolutions"]])
+    ax.loglog(cells, errors, "o", color=ACCENT, markersize=6.5, zorder=3)
+    middle = np.exp(np.mean(np.log(errors / cells**found["order"])))
+    ax.loglog(cells, middle * cells**found["order"], color=WARM, linewidth=1.2, zorder=2,
+              label=f"order {found['order']:.2f}")
+    for axis in (ax.xaxis, ax.yaxis):
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        axis.set_minor_formatter(NullFormatter())
+    ax.set_xticks(cells, [f"{cell:g}" for cell in cells])
+    ax.set_xlabel("cell, mm")
+    ax.set_ylabel("off by, %")
+    ax.legend(frameon=False)
 
 
 def estimates(study):

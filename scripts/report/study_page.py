@@ -52,15 +52,24 @@ def page_of_study(study):
 def _headline(study):
     cost = study.result["cost"]
     base = study.as_it_is
-    text = f"{integer(cost['runs'])} cuts, {len(study.knobs)} knobs turned one at a time"
+    text = (f"{integer(cost['runs'])} {'cuts' if study.looked_at is None else 'runs'}, {len(study.knobs)} knobs turned "
+            "one at a time")
     error, seconds = base.get("error"), drawing.core_seconds(base)
-    if error and seconds:
+    if error and seconds and study.looked_at is not None:
+        text += (f": the scene as it is takes {number(seconds, digits=2)} core-seconds, and its "
+                 f"{_looked_at(study)} by {number(error['larger']['value'], digits=2)} %")
+    elif error and seconds:
         text += (f": the scene as it is takes {number(seconds, digits=2)} core-seconds, and its F_c differs from the "
                  f"reference by {with_error(error['F_c']['value'], error['F_c']['se'])} %")
     if not study.result["complete"]:
         text += f"; {integer(cost['runs'] - cost['finished'])} are still to be simulated"
     return prose(text + ".")
 
+
+
+def _looked_at(study):
+    name = study.looked_at.removesuffix("_error").replace("_", " ")
+    return name + (" is off its closed form" if study.result["bodies"]["closed_form"] else " differs from the reference’s")
 
 
 def _work_precision(page, study):
@@ -70,6 +79,10 @@ def _work_precision(page, study):
         section.missing("No run can be compared with the reference" +
                         ("." if study.reference["verdict"] == "accepted" else ", which was not accepted."))
         return
+    if study.looked_at is not None:
+        section.figure(picture, f"By how much the {_looked_at(study)}. The pale stair is the front: no run is at once "
+                                "cheaper and nearer.")
+        return
     section.figure(picture, "The larger of the errors of both forces against the reference run, with ± one standard "
                             "error of both runs together. An error that is below its standard error counts as that and "
                             "is drawn open. The pale stair is the front: no run is at once cheaper and more precise.")
@@ -78,6 +91,9 @@ def _work_precision(page, study):
 def _convergence(page, study):
     section = page.section("Convergence in the cell size")
     picture = drawing.convergence(study)
+    if study.looked_at is not None:
+        _order(section, study, picture)
+        return
     if picture:
         section.figure(picture, "A power law in the cell height, F = F₀ + C hᵖ, and its limit for vanishing cells "
                                 "(diamond, with its 95 % interval). Dashed and open: the order is not resolvable.")
@@ -93,6 +109,18 @@ def _convergence(page, study):
     section.table(["force", "limit, N/m", "95 % interval", "order", "95 % interval", ""], rows, numeric=(1, 2, 3, 4))
 
 
+def _order(section, study, picture):
+    found = study.result["convergence"]
+    if not picture:
+        section.missing("Fewer than two accepted runs differ in the cell alone.")
+        return
+    section.figure(picture, "Runs that differ in the cell alone, and the power of the cell that passes through them.")
+    between = ["–"] + [f"{order:.2f}" for order in found["orders_between"]]
+    section.table(["cell, mm", "off by, %", "order from the coarser"],
+                  [[number(entry["cell"], digits=4), number(entry["error"], digits=3), order]
+                   for entry, order in zip(found["resolutions"], between)], numeric=range(3))
+
+
 def _percent(estimate):
     if not finite(estimate.get("value")):
         return "–"
@@ -106,6 +134,9 @@ def _turned(run):
 
 def _runs(page, study):
     section = page.section("Every run")
+    if study.looked_at is not None:
+        _runs_of_bodies(section, study)
+        return
     rows = []
     for run in study.runs:
         result, error = run.get("result") or {}, run.get("error")
@@ -129,10 +160,30 @@ def _runs(page, study):
                       for run in study.runs if run["refusals"]])
 
 
+def _runs_of_bodies(section, study):
+    rows = []
+    for run in study.runs:
+        result, error = run.get("result") or {}, run.get("error")
+        cost = result.get("cost") or {}
+        verdict = run["verdict"] if run["role"] != "reference" or run["verdict"] != "accepted" else "reference"
+        if error and error["front"]:
+            verdict = "on the front"
+        found = (result.get("results") or {}).get(study.looked_at)
+        rows.append([_turned(run), number(found, digits=5),
+                     f"{error['signed']['value']:+.3g}".replace("-", "−") if error else "–",
+                     number(cost.get("processor_s"), digits=3),
+                     f"{cost['particle_steps'] / 1e6:.3g}" if finite(cost.get("particle_steps")) else "–",
+                     chip(verdict, {"refused": "no", "not run": "bounded"}.get(verdict, ""))])
+    section.table(["what is turned", study.looked_at.replace("_", " "), "off by, %", "core-s", "10⁶ p.-steps", "verdict"],
+                  rows, numeric=range(1, 5))
+    section.warnings([html("{}: {}", _turned(run), prose("; ".join(run["refusals"])))
+                      for run in study.runs if run["refusals"]])
+
+
 def _cost(page, study):
     cost = study.result["cost"]
     page.section("Cost").facts([
-        ("simulated cuts", integer(cost["finished"]), f"of {integer(cost['runs'])}"),
+        ("simulated cuts" if study.looked_at is None else "runs", integer(cost["finished"]), f"of {integer(cost['runs'])}"),
         ("core time", f"{number(cost['core_s'])} s", "processor time of the runs"),
         ("wall time", f"{number(cost['wall_s'])} s", "over all sessions"),
     ])

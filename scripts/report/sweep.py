@@ -97,9 +97,15 @@ def varied(sweep):
     return several or [0]
 
 
+def found_by_bodies(sweep):
+    """Names of all that runs of bodies found; none of cuts."""
+    return list(dict.fromkeys(name for run in sweep.runs for name in (run.get("result") or {}).get("results") or {}))
+
+
 def _amount(run, key):
     """(value, standard error) of a drawn quantity; None when the run has none."""
     result = run.get("result") or {}
+    result = result.get("results") or result
     if key == "ratio":
         force, transverse = _amount(run, "F_c"), _amount(run, "F_t")
         if not force or not transverse or force[0] == 0:
@@ -167,6 +173,13 @@ def _panels(sweep):
 
 
 def forces(sweep):
+    """Of bodies: what they found; what is about an error alone where there are many."""
+    names = found_by_bodies(sweep)
+    if names:
+        errors = [name for name in names if name.endswith("_error")]
+        drawn = (errors if len(names) > 4 and errors else names)[:6]
+        return _against_first_axis(sweep, [(name, name.replace("_", " "), "1") for name in drawn],
+                                   "what was found against the swept values", 300, columns=min(2, len(drawn)))
     return _against_first_axis(sweep, FORCES, "cutting and transverse force against the swept values", 330)
 
 
@@ -276,7 +289,7 @@ def _legend(ax, sweep, beside, colours, marks):
         handles += [Line2D([], [], color=colour, linewidth=2, label=setting_text(axis, value))
                     for value, colour in zip(axis["values"], colours)]
     neutral = QUIET if beside is not None else ACCENT
-    symbols = [(("o", True), "touching the crack tip", dict(marker="o")),
+    symbols = [(("o", True), "accepted" if sweep.result.get("bodies") else "touching the crack tip", dict(marker="o")),
                (("D", True), "bending clear of it", dict(marker="D", markersize=5.8)),
                (("o", False), "refused", dict(marker="o", markerfacecolor="white")),
                (("D", False), "refused, bending", dict(marker="D", markersize=5.8, markerfacecolor="white")),

@@ -21,12 +21,16 @@ def page_of_sweep(sweep):
     return page
 
 
+def result_of_bodies(sweep):
+    return bool(sweep.result.get("bodies"))
+
+
 def _headline(sweep):
     cost = sweep.result["cost"]
     swept = " and ".join(drawing.name_of(sweep.axes[k]) for k in drawing.varied(sweep))
     outcome = ("all accepted" if cost["accepted"] == cost["runs"] else
                f"{integer(cost['accepted'])} accepted, {integer(cost['refused'])} refused")
-    text = f"{integer(cost['runs'])} simulated cuts over {swept}: {outcome}."
+    text = f"{integer(cost['runs'])} {'runs' if result_of_bodies(sweep) else 'simulated cuts'} over {swept}: {outcome}."
     if not sweep.result["complete"]:
         text += f" {integer(cost['runs'] - cost['finished'])} are still to be simulated."
     return prose(text)
@@ -42,10 +46,14 @@ def _swept(page, sweep):
 
 
 def _forces(page, sweep):
-    section = page.section("Forces")
+    section = page.section("What was found" if result_of_bodies(sweep) else "Forces")
     picture = drawing.forces(sweep)
     if not picture:
-        section.missing("No run left a force.")
+        section.missing("No run found anything." if result_of_bodies(sweep) else "No run left a force.")
+        return
+    if result_of_bodies(sweep):
+        section.figure(picture, "Open symbols are runs that were refused: their numbers are no results, and no line "
+                                "passes through them.")
         return
     section.figure(picture, "Means over the steady part of each cut with ± one standard error (often smaller than the "
                             "symbol). Open symbols are runs that an acceptance test refused: their forces are no "
@@ -53,6 +61,8 @@ def _forces(page, sweep):
 
 
 def _chip(page, sweep):
+    if result_of_bodies(sweep):
+        return
     picture = drawing.chip(sweep)
     if picture:
         page.section("Chip and crack").figure(
@@ -93,9 +103,30 @@ def _intercepts(page, sweep):
     section.warnings([prose(with_labels(text)) for text in dict.fromkeys(warnings)])
 
 
+def _runs_of_bodies(section, sweep, shown):
+    names = drawing.found_by_bodies(sweep)
+    rows = []
+    for run in sweep.runs:
+        result = run.get("result") or {}
+        found = result.get("results") or {}
+        rows.append([integer(run["run"])]
+                    + [drawing.value_text(sweep.axes[k] | {"unit": "1"}, run["values"][k]) for k in shown]
+                    + [number(found.get(name), digits=5) for name in names]
+                    + [number((result.get("cost") or {}).get("processor_s"), digits=3),
+                       chip(run["verdict"], {"refused": "no", "not run": "bounded"}.get(run["verdict"], ""))])
+    section.table(["run"] + [prose(drawing.short_with_unit(sweep.axes[k])) for k in shown]
+                  + [name.replace("_", " ") for name in names] + ["core-s", "verdict"], rows,
+                  numeric=range(len(shown) + len(names) + 2))
+    section.warnings([html("run {}: {}", run["run"], prose("; ".join(run["refusals"])))
+                      for run in sweep.runs if run["refusals"]])
+
+
 def _runs(page, sweep):
     section = page.section("Every run")
     shown = drawing.varied(sweep)
+    if result_of_bodies(sweep):
+        _runs_of_bodies(section, sweep, shown)
+        return
     heads = (["run"] + [prose(drawing.short_with_unit(sweep.axes[k])) for k in shown]
              + [prose("F_c, N/m"), prose("F_t, N/m"), prose("F_t/F_c"), "branch", "mode I", "chip ratio", prose("G/G_c"),
                 "residue", "verdict"])
