@@ -59,12 +59,17 @@ std::vector<Stage> plan(const Scene& scene) {
   if (scene.face_friction)
     add("rubbing", "closed crack faces without bonds rub on each other, up to the slip limit",
         [mu = scene.face_friction->coefficient, stiffness](State& state) { rub_faces(state, mu, stiffness); });
+  const bool warms = scene.thermal && scene.thermal->friction_share > 0.0;
   for (const Contact& contact : contacts(scene))
     add(contact.name,
         contact.does + (contact.friction > 0.0 ? " and rubs, up to the slip limit and the yield cap" : ""),
-        [&scene, contact, options = PressOptions{stiffness, cap}](State& state) {
-          press(state, contact, scene, options);
+        [&scene, contact, options = PressOptions{stiffness, cap},
+         act = contact.friction > 0.0 && warms ? press_and_warm : press](State& state) {
+          act(state, contact, scene, options);
         });
+  if (warms)
+    add("warm", "a share of the work of friction on the tool warms what rubs on it",
+        [&scene](State& state) { warm_by_friction(state, scene); });
   add("spread", "marker forces go to the nodes they were interpolated from", spread_marker_forces);
   if (spindle)
     add("drive", "forces of the spindle on the core, and their work",

@@ -94,6 +94,7 @@ struct CutResult {
   double room_ahead = 0;             ///< mm of window ahead of the foremost bond past its peak
   struct Heat {
     double chip, highest;  ///< temperatures: mean of the chip from 1.25 to 2.75 depths above the plane, and largest, K
+    std::optional<double> friction;  ///< that has stayed in the work since the start, N mm/mm; where friction heats
   };
   std::optional<Heat> heat;  ///< of a scene with [thermal], at the last instant
   double edge_share = 0;     ///< of the normal forces, near the edges where the window cuts the chip

@@ -22,7 +22,11 @@ std::vector<double> temperatures(const State& state, const Scene& scene) {
         for (std::size_t i = 0; i < p.size(); ++i) T[i] += per_work * law.plastic_work(p.plastic_strain[i]);
       },
       scene.material);
-  if (p.conducts)
+  if (const double alpha = scene.thermal->expansion; alpha > 0.0) {
+    const double per_stress = alpha * scene.thermal->start / capacity(scene);
+    for (std::size_t i = 0; i < p.size(); ++i) T[i] -= per_stress * (p.stress_xx[i] + p.stress_yy[i] + p.stress_zz[i]);
+  }
+  if (p.keeps_heat)
     for (std::size_t i = 0; i < p.size(); ++i) T[i] += p.conducted[i];
   return T;
 }
@@ -61,6 +65,19 @@ void HeatConduction::operator()(State& state) {
     each_node(grid, p.x[i], p.y[i],
               [&](std::size_t node, double w, double, double) { p.conducted[i] += w * rate_[node]; });
   });
+}
+
+void warm_by_friction(State& state, const Scene& scene) {
+  Particles& p = state.particles;
+  const double per_capacity = 1.0 / scene.thermal->specific_heat;
+  for (std::size_t side = 0; side < 2; ++side) {
+    std::vector<double>& heat = state.friction_heat[side];
+    if (std::all_of(heat.begin(), heat.end(), [](double h) { return h == 0.0; })) continue;
+    for (std::size_t i = p.begin[side]; i < p.begin[side + 1]; ++i)
+      each_node(state.grid, p.x[i], p.y[i],
+                [&](std::size_t node, double w, double, double) { p.conducted[i] += per_capacity * w * heat[node]; });
+    std::fill(heat.begin(), heat.end(), 0.0);
+  }
 }
 
 double longest_conduction_step(const Grid& grid, const Scene& scene) {

@@ -21,10 +21,10 @@ struct Particles {
   Array x, y, velocity_x, velocity_y;
   Array stress_xx, stress_yy, stress_zz, stress_xy;  ///< Kirchhoff stress
   Array plastic_strain, volume;
-  Array axis_x, axis_y;                       ///< direction of the grain; only for materials that have one
-  Array conducted;                            ///< temperature that conduction has added, K; only with a conductivity
+  Array axis_x, axis_y;  ///< direction of the grain; only for materials that have one
+  Array conducted;       ///< temperature that conduction and friction have added, K; only with either
   std::array<std::size_t, 3> begin{0, 0, 0};  ///< side s owns [begin[s], begin[s + 1])
-  bool has_axes = false, conducts = false;
+  bool has_axes = false, keeps_heat = false;
 
   struct Field {
     Array* values;
@@ -46,7 +46,7 @@ struct Particles {
       all.push_back({&axis_x, "grain direction x", 1});
       all.push_back({&axis_y, "grain direction y", 0});
     }
-    if (conducts) all.push_back({&conducted, "conducted temperature", 0});
+    if (keeps_heat) all.push_back({&conducted, "conducted temperature", 0});
     return all;
   }
   std::size_t size() const { return x.size(); }
@@ -193,6 +193,7 @@ struct ToolForce {
 /// Work done since the start, N mm/mm; what cannot be read off the state is added up here.
 struct Work {
   double tool = 0, mode_I = 0, mode_II = 0, friction = 0, damping = 0;
+  double friction_heat = 0;  ///< part of `friction` that stays in the work as heat
   double retired_elastic = 0, retired_plastic = 0, retired_kinetic = 0;
   double broken_length = 0;  ///< mm of crack path whose bonds are gone
   double lost_length = 0;    ///< ... of path that left the window with bonds that still held
@@ -209,6 +210,8 @@ struct State {
   ToolState tool;
   ToolForce force;
   Work work;
+  /// Of friction in this step, at each side's nodes, over their mass: mm^2/s^2. Empty unless friction heats.
+  std::array<std::vector<double>, 2> friction_heat;
   double contact_energy = 0;  ///< stored in contact springs this instant, N mm/mm
   double time = 0, step = 0;  ///< step: the time step
   double spin = 0;            ///< of a log, rad/s

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "forward/mpm/bspline.hpp"
+
 namespace kerf::forward {
 namespace {
 
@@ -208,7 +210,12 @@ void follow_face(State& state, double depth, double lift, bool sinks) {
   tool.y += state.step * tool.vertical_speed;
 }
 
-void press(State& state, const Contact& contact, const Scene& scene, const PressOptions& options) {
+namespace {
+
+/// `rubbed(face, marker, work)` is told the work of friction at every marker that slides.
+template <class Rubbed>
+void press_with(State& state, const Contact& contact, const Scene& scene, const PressOptions& options,
+                Rubbed&& rubbed) {
   Face& face = surface(state, contact.surface);
   const ToolState& tool = state.tool;
   const double length = state.crack.spacing;
@@ -268,12 +275,33 @@ void press(State& state, const Contact& contact, const Scene& scene, const Press
     slip = std::clamp(trial, -longest, longest);
     const double shear = -k_n * slip;  // on the work
     push(state, face, hit.k, shear * length * along_x, shear * length * along_y, motion);
-    state.work.friction -= shear * (trial - slip) * length;
+    const double rubbing = -shear * (trial - slip) * length;
+    state.work.friction += rubbing;
+    rubbed(face, hit.k, rubbing);
     state.contact_energy += 0.5 * k_n * slip * slip * length;
     FaceForce& force = state.force.face[static_cast<std::size_t>(hit.touch.face)];
     force.tangential -= shear * length;
     force.slip_limit += ratio * hit.pressure * length;
   }
+}
+
+}  // namespace
+
+void press(State& state, const Contact& contact, const Scene& scene, const PressOptions& options) {
+  press_with(state, contact, scene, options, [](const Face&, std::size_t, double) {});
+}
+
+void press_and_warm(State& state, const Contact& contact, const Scene& scene, const PressOptions& options) {
+  std::vector<double>& heat = state.friction_heat[contact.surface == Surface::lower_face ? below : above];
+  const auto give = [&](const Face& face, std::size_t k, double work) {
+    const double stays = scene.thermal->friction_share * work;
+    state.work.friction_heat += stays;
+    const Spline x(face.node_column[k], face.offset_x[k]), y(face.node_row[k], face.offset_y[k]);
+    for (int j = 0; j < 3; ++j)
+      for (int i = 0; i < 3; ++i)
+        heat[state.grid.node(x.base + i, y.base + j)] += stays * x.weight(i) * y.weight(j) * face.inverse_mass[k];
+  };
+  press_with(state, contact, scene, options, give);
 }
 
 }  // namespace kerf::forward

@@ -52,4 +52,8 @@ struct PressOptions {
 };
 void press(State& state, const Contact& contact, const Scene& scene, const PressOptions& options);
 
+/// The same, where a share of the friction's work stays in the work: it is booked, and given as heat to the nodes that
+/// the markers follow.
+void press_and_warm(State& state, const Contact& contact, const Scene& scene, const PressOptions& options);
+
 }  // namespace kerf::forward

@@ -270,7 +270,8 @@ double stable_step(const State& state, const Scene& scene) {
   if (p.has_axes)
     for (std::size_t i = p.begin[scene.log ? below : above]; i < p.begin[above + 1]; ++i)
       step = std::min(step, stable_step(scene, p.axis_x[i], p.axis_y[i]));
-  return p.conducts ? std::min(step, longest_conduction_step(state.grid, scene)) : step;
+  return scene.thermal && scene.thermal->conductivity > 0.0 ? std::min(step, longest_conduction_step(state.grid, scene))
+                                                            : step;
 }
 
 }  // namespace
@@ -313,7 +314,9 @@ State lay_out(const Scene& scene) {
   }
   state.density = laws::density(scene.material);
   state.particles.has_axes = laws::has_axes(scene.material);
-  state.particles.conducts = scene.thermal && scene.thermal->conductivity > 0.0;
+  state.particles.keeps_heat = scene.thermal && scene.thermal->is_kept();
+  if (scene.thermal && scene.thermal->friction_share > 0.0)
+    for (std::vector<double>& heat : state.friction_heat) heat.assign(nodes, 0.0);
   state.smallest_mass = 1e-12 * state.density * grid.cell_x * grid.cell_y /
                         (scene.particles_along_cell() * scene.resolution.particles_per_cell_side);
   state.crack.spacing = scene.marker_spacing();

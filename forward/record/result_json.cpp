@@ -115,6 +115,9 @@ Json result_json(const CutResult& result) {
   if (result.heat)
     json["temperature"] = {
         {"chip", finite_or_null(result.heat->chip)}, {"highest", finite_or_null(result.heat->highest)}, {"unit", "K"}};
+  if (result.heat && result.heat->friction)
+    json["friction_heat"] = {{"value", finite_or_null(*result.heat->friction / consistent_units_in("J/m"))},
+                             {"unit", "J/m"}};
   json["ledger"] = energies(result.ledger);
   json["deepest_penetration"] = finite_or_null(result.deepest_penetration);
   json["inertia_share"] = finite_or_null(result.inertia_share);

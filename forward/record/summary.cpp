@@ -156,7 +156,8 @@ Snapshot picture(const State& state, const Scene& scene) {
 CutResult::Heat heat_of(const State& state, const Scene& scene) {
   const Particles& p = state.particles;
   const std::vector<double> T = temperatures(state, scene);
-  CutResult::Heat heat{.chip = 0.0, .highest = scene.thermal->start};
+  CutResult::Heat heat{.chip = 0.0, .highest = scene.thermal->start, .friction = {}};
+  if (scene.thermal->friction_share > 0.0) heat.friction = state.work.friction_heat;
   double volume = 0.0;
   const double low = 1.25 * scene.cut.depth, high = 2.75 * scene.cut.depth,
                ahead = state.tool.x + 2.5 * scene.cut.depth;

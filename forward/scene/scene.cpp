@@ -165,6 +165,12 @@ std::vector<Block> declare() {
             number("taylor_quinney", "1", 0.0, 1.0, "share of the plastic work that becomes heat").or_else("0.9"),
             number("conductivity", "W/(m K)", 1e-6, 1e9,
                    "thermal conductivity k; absent: adiabatic, heat stays where it arises")
+                .if_given(),
+            number("friction_share", "1", 0.0, 1.0,
+                   "share of the work of friction on the tool that stays in the work as heat; absent: none")
+                .if_given(),
+            number("expansion", "1/K", 0.0, 1e-2,
+                   "linear thermal expansion: what is pulled elastically cools by it; absent: it does not")
                 .if_given()}},
       {.path = "window",
        .variant = "",
@@ -419,7 +425,13 @@ Scene read_scene(const Document& document) {
     scene.thermal = {.start = thermal->number("temperature"),
                      .specific_heat = thermal->number("specific_heat"),
                      .taylor_quinney = thermal->number("taylor_quinney"),
-                     .conductivity = thermal->has("conductivity") ? thermal->number("conductivity") : 0.0};
+                     .conductivity = thermal->has("conductivity") ? thermal->number("conductivity") : 0.0,
+                     .friction_share = thermal->has("friction_share") ? thermal->number("friction_share") : 0.0,
+                     .expansion = thermal->has("expansion") ? thermal->number("expansion") : 0.0};
+  if (scene.thermal && scene.thermal->friction_share > 0.0 && !scene.friction &&
+      !(scene.edge_contact && scene.edge_contact->friction > 0.0))
+    throw InputError(fmt::format("{}: [thermal] has a friction_share, but no face of the tool rubs (add [friction])",
+                                 block("thermal")->where("friction_share")));
   if (const Values* log = block("log")) scene.log = read_log(*log, scene);
   return scene;
 }

@@ -125,12 +125,17 @@ struct Thermostat {
   double kinetic_share, gain;
 };
 
-/// A share beta of the plastic work heats the material, and heat flows where there is a conductivity: effects/heat.
+/// A share beta of the plastic work heats the material, and a share of the friction on the tool; elastic strains cool
+/// and warm what expands, and heat flows where there is a conductivity: effects/heat.
 struct Thermal {
   double start;           ///< temperature of the work before the cut, K
   double specific_heat;   ///< c, mm^2/(s^2 K)
   double taylor_quinney;  ///< beta
   double conductivity;    ///< k, N/(s K); zero: adiabatic
+  double friction_share;  ///< of the work of friction on the tool, that stays in the work as heat; zero: none
+  double expansion;       ///< alpha, linear thermal expansion, 1/K; zero: elastic strains leave the temperature alone
+  /// Do particles keep a temperature of their own, beside what plastic work and stress tell?
+  bool is_kept() const { return conductivity > 0.0 || friction_share > 0.0; }
 };
 
 /// Extent of the simulated material around the tool tip, in depths of cut.

@@ -112,6 +112,9 @@ void print_table(const forward::CutResult& r) {
   if (r.heat)
     row("temperature", fmt::format("{:.1f} K", r.heat->chip),
         fmt::format("mean of the chip; hottest point {:.1f} K", r.heat->highest).c_str());
+  if (r.heat && r.heat->friction)
+    row("heat of friction", fmt::format("{:.4g} J/m", *r.heat->friction / consistent_units_in("J/m")),
+        "that has stayed in the work");
   row("inertia", fmt::format("{:.1f} %", 100 * r.inertia_share), "of F_c, to set the chip in motion (rho d v^2)");
   row("deepest penetration", fmt::format("{:.3f} cells", r.deepest_penetration), "of a crack face into the tool");
   fmt::print("\nenergy per width          J/m   share of the tool's work\n");

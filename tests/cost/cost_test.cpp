@@ -51,7 +51,7 @@ TEST(Cost, AnAbsentEffectRunsNoInstruction) {
   if (std::string(KERF_COST_PROBE).empty() || std::system("command -v valgrind >/dev/null") != 0)
     GTEST_SKIP() << "valgrind counts the instructions, and is not installed (scripts/install-deps.sh)";
   const std::map<std::string, double> count = instructions();
-  ASSERT_EQ(count.size(), 16u);
+  ASSERT_EQ(count.size(), 18u);
   for (const auto& [name, per_particle_step] : count)
     std::printf("%-18s %8.1f instructions per particle-step\n", name.c_str(), per_particle_step);
 
@@ -59,6 +59,8 @@ TEST(Cost, AnAbsentEffectRunsNoInstruction) {
   for (const char* effect : {"friction", "edge_contact", "chip_breaker", "sole", "nose_bar", "bridging", "pic_damping",
                              "xpic_damping", "thermostat"})
     EXPECT_GT(count.at(effect) / count.at("plain"), 1.001) << effect;
+  EXPECT_NEAR(count.at("thermal_friction") / count.at("friction"), 1.0, 2e-4);
+  EXPECT_GT(count.at("friction_heat") / count.at("friction"), 1.001);
   EXPECT_GT(count.at("grips") / count.at("no_tool"), 1.001);
   for (const char* effect : {"bodies_gravity", "bodies_pic_damping"})
     EXPECT_GT(count.at(effect) / count.at("bodies"), 1.001) << effect;
@@ -110,6 +112,17 @@ TEST(Cost, AnAbsentEffectHoldsNoByte) {
   EXPECT_EQ(bytes_of(hot).per_particle, plain.per_particle);
   const Scene cold = shipped("verification_45");
   EXPECT_EQ(plan(hot).size(), plan(cold).size());
+  hot.thermal->expansion = 7e-5;
+  EXPECT_EQ(bytes_of(hot).per_particle, plain.per_particle);
+  EXPECT_EQ(plan(hot).size(), plan(cold).size());
+  Scene rubbed = hot;
+  rubbed.friction = {.coefficient = 0.2, .yield_cap = 0.9};
+  EXPECT_EQ(plan(rubbed).size(), plan(cold).size());
+  EXPECT_TRUE(lay_out(rubbed).friction_heat[above].empty());
+  rubbed.thermal->friction_share = 0.5;
+  EXPECT_EQ(plan(rubbed).size(), plan(cold).size() + 1);
+  EXPECT_EQ(bytes_of(rubbed).per_particle, plain.per_particle + sizeof(double));
+  EXPECT_FALSE(lay_out(rubbed).friction_heat[above].empty());
   hot.thermal->conductivity = 1;
   EXPECT_EQ(bytes_of(hot).per_particle, plain.per_particle + sizeof(double));
   EXPECT_EQ(plan(hot).size(), plan(cold).size() + 1);

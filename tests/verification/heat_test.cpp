@@ -54,6 +54,65 @@ TEST(Heat, MeanTemperatureTimesHeatCapacityIsTheShareOfThePlasticWork) {
   }
 }
 
+TEST(Heat, AShareOfTheFrictionStaysInTheWork) {
+  for (const double share : {0.0, 0.4, 1.0}) {
+    Scene scene = shipped("friction_45", {{"resolution.cells_through_chip", 4}, {"cut.ramp", 0}});
+    scene.thermal = shipped("heat_45").thermal;
+    scene.thermal->friction_share = share;
+    State state = lay_out(scene);
+    const std::vector<Stage> stages = plan(scene);
+    double next = scene.cell_length();
+    while (state.tool.x < 2.0 * scene.cut.depth) {
+      for (const Stage& stage : stages) stage.apply(state);
+      state.time += state.step;
+      if (state.tool.x < next) continue;
+      next += scene.cell_length();
+      shift_window(state, scene);
+    }
+    ASSERT_TRUE(state.breakdown.empty()) << state.breakdown;
+    ASSERT_EQ(state.work.retired_plastic, 0.0);
+    const std::vector<double> T = temperatures(state, scene);
+    double heat = 0, chip = 0;
+    for (std::size_t i = 0; i < state.particles.begin[2]; ++i) {
+      heat += state.particles.volume[i] * capacity(scene) * (T[i] - scene.thermal->start);
+      if (share > 0.0 && i >= state.particles.begin[above])
+        chip += state.particles.volume[i] * capacity(scene) * state.particles.conducted[i];
+    }
+    const Ledger ledger = take_stock(state, scene.material);
+    const double of_friction = heat - scene.thermal->taylor_quinney * ledger.plastic;
+    std::printf("share %.1f: heat of friction %.9f of %.9f N mm/mm of work\n", share, of_friction, ledger.friction);
+    EXPECT_GT(ledger.friction, 0.5);
+    EXPECT_NEAR(of_friction, share * ledger.friction, 1e-9 * heat);
+    EXPECT_NEAR(state.work.friction_heat, share * ledger.friction, 1e-12 * ledger.friction);
+    EXPECT_NEAR(chip, share * ledger.friction, 1e-9 * ledger.friction);
+    EXPECT_EQ(state.friction_heat[above].empty(), share == 0.0);
+    EXPECT_EQ(state.particles.conducted.empty(), share == 0.0);
+  }
+}
+
+TEST(Heat, WhatIsPulledElasticallyCools) {
+  // dT = -alpha T_0 tr(sigma)/(rho c), Thomson 1855.
+  Scene scene = shipped("heat_45", {{"resolution.cells_through_chip", 4}});
+  scene.thermal->expansion = 7e-5;
+  State state = lay_out(scene);
+  Particles& p = state.particles;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    p.stress_xx[i] = 12;
+    p.stress_zz[i] = i % 2 == 0 ? 4 : -28;
+  }
+  const std::vector<double> T = temperatures(state, scene);
+  const double cooling = 7e-5 * scene.thermal->start * 16 / capacity(scene);
+  EXPECT_GT(cooling, 0.1);
+  EXPECT_NEAR(T[0] - scene.thermal->start, -cooling, 1e-9);
+  EXPECT_NEAR(T[1] - scene.thermal->start, cooling, 1e-9);
+  EXPECT_TRUE(p.conducted.empty());
+  // Elastic strains give back what they take: in a cut that is over they have moved heat, and made none.
+  const CutResult with = run(scene), without = run(shipped("heat_45", {{"resolution.cells_through_chip", 4}}));
+  EXPECT_EQ(with.F_c.value, without.F_c.value);
+  EXPECT_NEAR(with.heat->chip, without.heat->chip, 0.3);
+  EXPECT_NE(with.heat->chip, without.heat->chip);
+}
+
 TEST(Heat, TheChipIsAsWarmAsTheForceSays) {
   const Scene scene = shipped("heat_45", {{"resolution.cells_through_chip", 4}});
   const CutResult result = run(scene), cold = run(shipped("verification_45", {{"resolution.cells_through_chip", 4}}));

@@ -112,6 +112,15 @@ int main() {
   count("by_hand", scene, written_by_hand(scene, true));
   planned("plain", scene);
   with("friction", [](Scene& s) { s.friction = {.coefficient = 0.2, .yield_cap = 0.9}; });
+  // A temperature that nothing has to carry, and one that friction changes.
+  const auto rub = [](Scene& s, double share) {
+    s.friction = {.coefficient = 0.2, .yield_cap = 0.9};
+    s.thermal = kerf::testing::shipped("heat_45").thermal;
+    s.thermal->expansion = 7e-5;
+    s.thermal->friction_share = share;
+  };
+  with("thermal_friction", [&](Scene& s) { rub(s, 0.0); });
+  with("friction_heat", [&](Scene& s) { rub(s, 0.5); });
   with("edge_contact", [](Scene& s) { s.edge_contact = {.press_in = 0.005, .edge_radius = 0.5, .friction = 0.0}; });
   with("chip_breaker", [](Scene& s) { s.chip_breaker = {.distance = 1.0, .angle = -0.2, .land = 2.0}; });
   with("sole", [](Scene& s) { s.sole = {.opening = 1.0, .corner_radius = 0.05}; });
