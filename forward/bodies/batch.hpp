@@ -64,6 +64,15 @@ void each_batch(const Body& body, Visit&& visit) {
       body.law);
 }
 
+/// Temperatures of all points, K; of a body that has them.
+inline Array temperatures(const Body& body) {
+  Array all = body.points.temperature;
+  each_batch(body, [&](const auto& law, const laws::BodyPoints& points, std::size_t first) {
+    if constexpr (requires { law.warming(points); }) store(&all[first], points.temperature + law.warming(points));
+  });
+  return all;
+}
+
 inline double density_of(const Body& body) {
   return std::visit([](const auto& law) { return law.mass_density(); }, body.law);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "forward/bodies/batch.hpp"
 #include "forward/bodies/walls.hpp"
 #include "forward/mpm/each_node.hpp"
 
@@ -17,10 +18,11 @@ void Conductor::operator()(State& state) {
     if (!body.is_thermal()) continue;
     const Points& p = body.points;
     const double c = laws::heat_capacity(body.law);
+    const Array T = temperatures(body);
     for (std::size_t i = 0; i < p.size(); ++i)
       each_node(grid, p.reference_x[i], p.reference_y[i], [&](std::size_t node, double w, double, double) {
         capacity_[node] += w * p.volume[i] * c;
-        content_[node] += w * p.volume[i] * c * p.temperature[i];
+        content_[node] += w * p.volume[i] * c * T[i];
       });
   }
   for (const std::size_t normal : {1u, 0u})

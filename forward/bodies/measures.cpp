@@ -46,9 +46,9 @@ void cycle(const BodiesResult& result, const Scene& scene, Json& json) {
   json["closing_length_error"] = end.length / scene.length - 1.0;
   json["heat_taken"] = taken;
   json["work_given"] = -end.piston_work;
-  if (end.plastic_work > 0.0) {
+  const auto* metal = std::get_if<laws::MieGruneisen>(&scene.bodies.front().law);
+  if (metal && end.plastic_work > 0.0) {
     // Yielding makes entropy in every stroke: beta dW_p/T, between beta W_p/T_h and beta W_p/T_c.
-    const auto* metal = std::get_if<laws::MieGruneisen>(&scene.bodies.front().law);
     const double made = end.entropy - end.bath_entropy;
     json["plastic_work"] = end.plastic_work;
     json["entropy_made"] = made;

@@ -215,12 +215,8 @@ BodyPlan read_body(const Values& values, double length, double height) {
                 .wavelength = values.has("wavelength") ? values.number("wavelength") : 0.0,
                 .spin = values.number("spin"),
                 .where = values.where("law")};
-  std::visit(
-      [&](const auto& law) {
-        if constexpr (std::decay_t<decltype(law)>::is_thermal)
-          body.temperature = values.has("temperature") ? values.number("temperature") : law.reference;
-      },
-      body.law);
+  if (laws::heat_capacity(body.law) > 0.0)
+    body.temperature = values.has("temperature") ? values.number("temperature") : laws::reference_temperature(body.law);
   return body;
 }
 
@@ -343,9 +339,8 @@ Stroke read_stroke(const Values& values, bool thermal) {
 }  // namespace
 
 bool Scene::is_thermal() const {
-  return std::any_of(bodies.begin(), bodies.end(), [](const BodyPlan& body) {
-    return std::visit([](const auto& law) { return std::decay_t<decltype(law)>::is_thermal; }, body.law);
-  });
+  return std::any_of(bodies.begin(), bodies.end(),
+                     [](const BodyPlan& body) { return laws::heat_capacity(body.law) > 0.0; });
 }
 
 bool has_bodies(const Document& document) {
@@ -392,6 +387,13 @@ Scene read_scene(const Document& document) {
     scene.rigids.push_back(read_rigid(rigid, scene.length, scene.height));
   const bool thermal = scene.is_thermal();
   for (const Values& stroke : contents.all("stroke")) scene.strokes.push_back(read_stroke(stroke, thermal));
+  for (std::size_t i = 0; i < scene.strokes.size(); ++i)
+    for (const BodyPlan& body : scene.bodies)
+      if (scene.strokes[i].heat == Heat::isothermal && !laws::is_thermal(body.law))
+        throw InputError(
+            fmt::format("{}: [[stroke]] has heat = \"isothermal\", but the body at {} only heats by yielding (allowed: "
+                        "adiabatic)",
+                        contents.all("stroke")[i].where("heat"), body.where));
   double stretch = 1.0;
   for (std::size_t i = 0; i < scene.strokes.size(); ++i) {
     const Stroke& stroke = scene.strokes[i];
@@ -418,8 +420,8 @@ Scene read_scene(const Document& document) {
     const Values& values = contents.at("conduction");
     if (!thermal)
       throw InputError(
-          fmt::format("{}: [conduction] needs a body with a temperature (allowed: ideal_gas, ideal_rubber, "
-                      "mie_gruneisen)",
+          fmt::format("{}: [conduction] needs a body with a temperature (ideal_gas, ideal_rubber, "
+                      "mie_gruneisen, or any with a specific_heat)",
                       values.where("conductivity")));
     scene.conduction = {.conductivity = values.number("conductivity"), .wall_temperature = {}};
     for (std::size_t edge = 0; edge < edge_names.size(); ++edge) {

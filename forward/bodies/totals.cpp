@@ -40,14 +40,15 @@ Totals totals(const State& state) {
       all.internal += sum(volume * law.energy(points));
       all.stress_xx += sum(volume * points.xx);
       all.stress_yy += sum(volume * points.yy);
-      if constexpr (std::decay_t<decltype(law)>::is_thermal) {
-        heated += sum(volume);
-        all.temperature += sum(volume * points.temperature);
-        if constexpr (requires { law.plastic_work(points); })
-          all.plastic_work += sum(volume * law.plastic_work(points));
-        const Lanes thermal = each_lane(points.temperature, [](double T) { return std::log(T); });
-        all.entropy += sum(volume * (law.heat_capacity() * thermal + law.configurational_entropy(points)));
-      }
+      if (!body.is_thermal()) return;
+      heated += sum(volume);
+      Lanes T = points.temperature;
+      if constexpr (requires { law.warming(points); }) T += law.warming(points);
+      all.temperature += sum(volume * T);
+      if constexpr (requires { law.plastic_work(points); }) all.plastic_work += sum(volume * law.plastic_work(points));
+      Lanes entropy = law.heat_capacity() * each_lane(T, [](double at) { return std::log(at); });
+      if constexpr (std::decay_t<decltype(law)>::is_thermal) entropy += law.configurational_entropy(points);
+      all.entropy += sum(volume * entropy);
     });
   }
   all.stress_xx /= all.volume;

@@ -7,7 +7,7 @@ namespace kerf::forward::bodies {
 /// Sums over the points of all bodies, per unit width: N mm/mm, N mm/(mm K), K, MPa.
 struct Totals {
   double kinetic = 0, internal = 0, entropy = 0;
-  double plastic_work = 0;  ///< of thermal bodies that yield
+  double plastic_work = 0;  ///< of bodies with a temperature
   double temperature = 0;   ///< mean over the reference volume of thermal bodies
   double volume = 0;        ///< reference volume, mm^2
   double stress_xx = 0;     ///< mean Kirchhoff stress along the piston's way

@@ -29,14 +29,15 @@ const std::vector<Kind>& kinds() {
 }  // namespace
 
 double heat_capacity(const BodyLaw& law) {
-  return std::visit(
-      [](const auto& which) {
-        if constexpr (std::decay_t<decltype(which)>::is_thermal)
-          return which.heat_capacity();
-        else
-          return 0.0;
-      },
-      law);
+  return std::visit([](const auto& which) { return which.heat_capacity(); }, law);
+}
+
+double reference_temperature(const BodyLaw& law) {
+  return std::visit([](const auto& which) { return which.reference; }, law);
+}
+
+bool is_thermal(const BodyLaw& law) {
+  return std::visit([](const auto& which) { return std::decay_t<decltype(which)>::is_thermal; }, law);
 }
 
 std::vector<Block> body_blocks(const std::vector<Parameter>& common) {

@@ -49,8 +49,12 @@ concept ThermalLaw = LawOfBody<Law> && Law::is_thermal && requires(const Law& la
   { law.configurational_entropy(points) } -> std::same_as<Lanes>;
 };
 
-/// c of a law of heat and stress, N/(mm^2 K); zero of the others.
+/// c, N/(mm^2 K); zero of a law without a temperature.
 double heat_capacity(const BodyLaw& law);
+/// Where a body's temperature begins if nobody says, K.
+double reference_temperature(const BodyLaw& law);
+/// Is this a law of heat and stress, which exchanges heat with a bath?
+bool is_thermal(const BodyLaw& law);
 
 /// One [[body]] block per law, each beginning with `common`.
 std::vector<Block> body_blocks(const std::vector<Parameter>& common);

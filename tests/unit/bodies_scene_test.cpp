@@ -31,6 +31,15 @@ std::string complaint(const std::string& text) {
   return "no complaint";
 }
 
+std::vector<std::string> stages_of(const std::string& text) {
+  const Scene scene = read_scene(Document::parse(text, "bodies.toml"));
+  State state = lay_out(scene);
+  Joint joint(state, scene);
+  std::vector<std::string> names;
+  for (const Stage& stage : plan(scene, joint)) names.push_back(stage.name);
+  return names;
+}
+
 TEST(BodiesScene, BadInputIsSaidWithItsPlace) {
   const std::string gas = shipped_text("carnot_gas");
   EXPECT_THAT(complaint(replaced(gas, "\"600 K\"\nheat_ratio", "\"-600 K\"\nheat_ratio")), HasSubstr("reference_temp"));
@@ -72,6 +81,25 @@ TEST(BodiesScene, BadContactIsSaidWithItsPlace) {
               HasSubstr("holds the piston still"));
 }
 
+TEST(BodiesScene, TemperaturesOfYieldingBodiesAreAskedForWhole) {
+  const std::string bar = shipped_text("interface_bar"), law = "law = \"j2\"\n",
+                    heat = "specific_heat = \"1 kJ/(kg K)\"\n";
+  EXPECT_THAT(complaint(replaced(bar, law, law + "taylor_quinney = 0.9\n")), HasSubstr("lacks \"specific_heat\""));
+  EXPECT_THAT(complaint(replaced(bar, law, law + heat)), HasSubstr("a body has a temperature"));
+  const auto stroke = [&](const std::string& how) {
+    std::string text = replaced(bar, law, law + heat);
+    for (const char* begin : {"piston_speed = \"0.02", "piston_speed = \"0 "})
+      text = replaced(text, begin, how + begin);
+    return text;
+  };
+  EXPECT_THAT(complaint(stroke("heat = \"isothermal\"\ntemperature = \"300 K\"\n")),
+              HasSubstr("only heats by yielding"));
+  const State state = lay_out(read_scene(Document::parse(stroke("heat = \"adiabatic\"\n"), "bar.toml")));
+  EXPECT_EQ(state.bodies[0].points.temperature.size(), state.bodies[0].points.size());
+  EXPECT_EQ(state.bodies[1].points.temperature.capacity(), 0u);
+  EXPECT_EQ(stages_of(stroke("heat = \"adiabatic\"\n")), stages_of(bar));
+}
+
 TEST(BodiesScene, BadNumericsAreSaidWithTheirPlace) {
   const auto gas = [](const std::string& keys) {
     return complaint(shipped_text("carnot_gas") + "\n[numerics]\n" + keys + "\n");
@@ -90,15 +118,6 @@ TEST(BodiesScene, BadNumericsAreSaidWithTheirPlace) {
               HasSubstr("with an [interface] is \"spline\""));
   EXPECT_THAT(complaint(shipped_text("incline") + "\n[numerics]\nshape = \"uGIMP\"\n"),
               HasSubstr("with [contact] is \"spline\""));
-}
-
-std::vector<std::string> stages_of(const std::string& text) {
-  const Scene scene = read_scene(Document::parse(text, "bodies.toml"));
-  State state = lay_out(scene);
-  Joint joint(state, scene);
-  std::vector<std::string> names;
-  for (const Stage& stage : plan(scene, joint)) names.push_back(stage.name);
-  return names;
 }
 
 TEST(BodiesScene, AnAbsentEffectHasNoStageAndNoByte) {

@@ -170,5 +170,36 @@ TEST(Bodies, AnImpossibleStrokeEndsInARefusal) {
   ASSERT_FALSE(result.refusals.empty());
 }
 
+/// A bar between walls whose free top lets it flow as it is pulled by five per cent.
+std::string pulled(const std::string& law, const std::string& more) {
+  return fmt::format(
+      "title = \"pull\"\nmeasures = []\n[box]\nlength = \"10 mm\"\nheight = \"5 mm\"\ncell = \"0.5 mm\"\ntop = "
+      "\"open\"\n[[body]]\n{}\ndensity = \"1000 kg/m^3\"\nspecific_heat = \"1000 J/(kg K)\"\nheight = \"4 "
+      "mm\"\n{}\n[[stroke]]\nheat = \"adiabatic\"\npiston_speed = \"2 m/s\"\nramp = \"0.05 ms\"\nuntil_stretch = "
+      "1.05\n[pic_damping]\nrate = 0.05\n",
+      law, more);
+}
+
+TEST(Bodies, PlasticWorkHeatsWhatFollowsALawOfTheCut) {
+  const std::string isotropic = "elastic_modulus = \"1000 MPa\"\npoisson_ratio = 0.3\nyield_stress = \"10 MPa\"\n";
+  for (const std::string& law : {"law = \"j2\"\n" + isotropic, "law = \"hencky\"\n" + isotropic})
+    for (const auto& [share, more] :
+         {std::pair{0.9, ""}, {0.5, ""}, {0.9, "[conduction]\nconductivity = \"50 W/(m K)\""}}) {
+      const BodiesResult result = result_of(pulled(law, fmt::format("taylor_quinney = {}", share)) + more);
+      ASSERT_TRUE(result.accepted) << result.refusals[0];
+      const Reading& end = result.history.back();
+      // What neither moves nor can be let go of again has been spent on yielding.
+      // In plane strain it flows at 2/sqrt(3) of the yield stress, half of that across.
+      const double x = 20 / std::numbers::sqrt3, z = 0.5 * x, volume = 40;
+      const double stored = volume * (1.3 * (x * x + z * z) - 0.3 * (x + z) * (x + z)) / 2000;
+      const double heat = volume * 1.0 * (end.temperature - 293.15);  // rho c = 1 N/(mm^2 K)
+      std::printf("warmer by %.4f K: heat %.4f, share of the work %.4f N mm/mm\n", end.temperature - 293.15, heat,
+                  share * (end.piston_work - end.damping - end.kinetic - stored));
+      EXPECT_GT(end.plastic_work, 15);
+      EXPECT_NEAR(heat / (share * end.plastic_work), 1, 1e-9);
+      EXPECT_NEAR(heat / (share * (end.piston_work - end.damping - end.kinetic - stored)), 1, 0.01);
+    }
+}
+
 }  // namespace
 }  // namespace kerf::forward::bodies
