@@ -155,7 +155,7 @@ def _runs(page, sweep):
 def _cost(page, sweep):
     cost = sweep.result["cost"]
     page.section("Cost").facts([
-        ("simulated cuts", integer(cost["finished"]), f"of {integer(cost['runs'])}"),
+        ("runs" if result_of_bodies(sweep) else "simulated cuts", integer(cost["finished"]), f"of {integer(cost['runs'])}"),
         ("core time", f"{number(cost['core_s'])} s", "one core per simulation"),
         ("wall time", f"{number(cost['wall_s'])} s", "over all sessions"),
     ])
