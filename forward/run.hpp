@@ -107,8 +107,17 @@ struct CutResult {
   Ledger ledger;
   Cost cost;
   std::vector<ForceSample> history;
+  bool chained = false;      ///< began with the state of another run
   bool is_specimen = false;  ///< pulled by grips: `history[i].extension` is its R-curve, and there is no steady force
   Snapshot snapshot;
+};
+
+struct State;
+
+/// Where a run begins and where it leaves off: cuts with other parameters can be chained, each without a run-in.
+struct Chain {
+  const State* from = nullptr;  ///< a state that fits the scene (see record/state_file.hpp); null: unbroken material
+  State* to = nullptr;          ///< takes the state at the last cell crossing, if there was one
 };
 
 struct Progress {
@@ -119,7 +128,7 @@ struct Progress {
 
 /// Simulates one cut. Thread-safe (no globals), deterministic: equal scenes give bitwise equal results.
 /// `progress` is called after every cell crossing; returning false stops the run, which is then refused as
-/// "interrupted".
-CutResult run(const Scene& scene, const std::function<bool(const Progress&)>& progress = {});
+/// "interrupted". A run that begins with another's state counts travel and energies from there.
+CutResult run(const Scene& scene, const std::function<bool(const Progress&)>& progress = {}, const Chain& chain = {});
 
 }  // namespace kerf::forward

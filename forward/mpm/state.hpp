@@ -175,6 +175,7 @@ struct Crack {
 
 struct ToolState {
   double x = 0, y = 0, speed = 0, vertical_speed = 0;
+  double start = 0;                       ///< x where the run began
   double overlap = 0;                     ///< mean penetration of the lower face in the last step, mm
   double sink = 0;                        ///< by how much the edge is lowered to make up for it, mm
   double tip_radius = 0, tip_growth = 0;  ///< mm, and its change in this step
@@ -218,6 +219,7 @@ struct State {
   double density = 0;         ///< tonne/mm^3
   double smallest_mass = 0;   ///< nodes below it are empty
   double fed_to = 0;          ///< right end of the material laid so far
+  double next_crossing = 0;   ///< tool position at which the window follows next
   std::string breakdown;      ///< why the run cannot go on; empty while it can
 };
 

@@ -332,9 +332,13 @@ State lay_out(const Scene& scene) {
     for (int i = 0; i < extent.ahead; ++i) feed_column(state, scene, i * grid.cell_x);
     sort_into_batches(state, scene, sides(state.particles));
   }
+  settle(state, scene);
+  return state;
+}
+
+void settle(State& state, const Scene& scene) {
   state.step = stable_step(state, scene);
   gather_momentum(state);
-  return state;
 }
 
 void shift_window(State& state, const Scene& scene) {
@@ -342,8 +346,7 @@ void shift_window(State& state, const Scene& scene) {
   state.grid.left += state.grid.cell_x;
   if (!scene.log) feed_column(state, scene, state.fed_to);
   sort_into_batches(state, scene, sides(state.particles));
-  if (state.particles.has_axes) state.step = stable_step(state, scene);
-  gather_momentum(state);
+  settle(state, scene);
   retire_markers(state);
 }
 

@@ -8,8 +8,10 @@
 #include <filesystem>
 #include <functional>
 #include <mutex>
+#include <span>
 #include <string>
 #include <system_error>
+#include <vector>
 
 #include "models/base/error.hpp"
 
@@ -81,6 +83,25 @@ inline std::string read_attribute(hid_t owner, const char* name) {
   const std::string text = content;
   H5free_memory(content);
   return text;
+}
+
+inline void write_numbers(hid_t owner, const std::string& name, std::span<const double> numbers) {
+  const hsize_t extent = numbers.size();
+  const Handle space(H5Screate_simple(1, &extent, nullptr), H5Sclose, "data space");
+  const Handle set(H5Dcreate2(owner, name.c_str(), H5T_IEEE_F64LE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                   H5Dclose, "dataset");
+  if (!numbers.empty())
+    check(H5Dwrite(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data()), "dataset");
+}
+
+inline std::vector<double> read_numbers(hid_t owner, const std::string& name) {
+  const Handle set(H5Dopen2(owner, name.c_str(), H5P_DEFAULT), H5Dclose, name.c_str());
+  const Handle space(H5Dget_space(set), H5Sclose, name.c_str());
+  const hssize_t size = H5Sget_simple_extent_npoints(space);
+  if (size < 0) throw Failure{name};
+  std::vector<double> numbers(static_cast<std::size_t>(size));
+  if (size > 0) check(H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data()), name.c_str());
+  return numbers;
 }
 
 /// The library is not built for threads; simulations that run side by side take turns.

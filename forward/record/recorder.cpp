@@ -94,7 +94,7 @@ void Recorder::add_step(const State& state) {
 }
 
 void Recorder::add_crossing(const State& state, const Scene& scene) {
-  ForceSample sample{.travel = state.tool.x,
+  ForceSample sample{.travel = state.tool.x - state.tool.start,
                      .face = sum_.face,
                      .F_c = sum_.on_work_x / steps_,
                      .F_t = -sum_.on_work_y / steps_,

@@ -89,6 +89,7 @@ Json result_json(const CutResult& result) {
   Json json = Json::object();
   json["F_c"] = in_unit(result.F_c, "N/m");
   json["F_t"] = in_unit(result.F_t, "N/m");
+  if (result.chained) json["chained"] = true;
   json["steady"] = result.steady;
   json["steady_from"] = finite_or_null(result.steady_from);
   json["accepted"] = result.accepted;

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "forward/bodies/run.hpp"
 #include "forward/record/cut_file.hpp"
 #include "forward/record/result_json.hpp"
+#include "forward/record/state_file.hpp"
 #include "forward/run.hpp"
 #include "forward/scene/preset.hpp"
 #include "inverse/commands/commands.hpp"
@@ -136,7 +138,7 @@ void print_table(const forward::CutResult& r) {
 }
 
 struct Options {
-  std::string scene, output, preset;
+  std::string scene, output, preset, start_from, save_state;
   std::vector<std::string> settings;
   bool json = false;
 };
@@ -144,6 +146,8 @@ struct Options {
 /// An experiment on bodies instead of a cut.
 ExitCode simulate_bodies(const Options& options, Document document) {
   if (!options.preset.empty()) throw InputError("--preset is about cuts; this scene holds bodies", ExitCode::usage);
+  if (!options.start_from.empty() || !options.save_state.empty())
+    throw InputError("--start-from and --save-state are about cuts; this scene holds bodies", ExitCode::usage);
   inverse::apply_settings(options.settings, document, forward::bodies::scene_blocks(), "kerf simulate --set");
   const forward::bodies::Scene scene = forward::bodies::read_scene(document);
   if (!options.output.empty()) require_writable(options.output, ".json");
@@ -180,16 +184,26 @@ ExitCode simulate(const Options& options) {
   inverse::apply_settings(options.settings, document, forward::scene_blocks(), "kerf simulate --set");
   const forward::Scene scene = forward::read_scene(document);
   if (!options.output.empty()) require_writable(options.output);
+  if (!options.save_state.empty()) {
+    require_writable(options.save_state);
+    forward::require_chainable(scene, options.scene);
+  }
+  std::optional<forward::State> start;
+  if (!options.start_from.empty()) start = forward::read_state(options.start_from, scene);
+  forward::State end;
 
   const StopOnInterrupt guard;
   ProgressLine line;
-  const forward::CutResult result = forward::run(scene, [&](const forward::Progress& progress) {
+  const auto show = [&](const forward::Progress& progress) {
     line.show(progress);
     return !StopOnInterrupt::asked();
-  });
+  };
+  const forward::CutResult result =
+      forward::run(scene, show, {.from = start ? &*start : nullptr, .to = options.save_state.empty() ? nullptr : &end});
   line.clear();
 
   if (!options.output.empty()) forward::write_cut(options.output, document, result);
+  if (end.step > 0.0) forward::write_state(options.save_state, end, scene);
   if (options.json)
     fmt::print("{}\n", forward::result_json(result).dump(2));
   else
@@ -212,6 +226,10 @@ void add_simulate(CLI::App& app, int& exit_code) {
                       "draft, standard or reference: over what the scene says (see `kerf list preset`)");
   command->add_option("--set", options->settings, "PATH=VALUE, as in tool.rake=30deg: another value than the scene's")
       ->allow_extra_args(false);
+  command->add_option("--save-state", options->save_state,
+                      "keep the cut's last state in this HDF5 file, for other cuts to begin with");
+  command->add_option("--start-from", options->start_from,
+                      "begin with the state of a cut of the same mesh and tool instead of unbroken material");
   command->add_flag("--json", options->json, "print the result as JSON");
   command->footer("Exit code 0: accepted. 4: finished, but a test of the result failed (said on stderr). 130: Ctrl-C.");
   command->callback([options, &exit_code] { exit_code = static_cast<int>(simulate(*options)); });

@@ -61,6 +61,19 @@ TEST_F(CutCommands, SimulateRefusesAPlaceItCannotWriteBeforeItRuns) {
   }
 }
 
+TEST_F(CutCommands, SimulateGoesOnFromAKeptState) {
+  const std::string simulate = "simulate '" + scene_.string() + "' --json", state = (folder_ / "state.h5").string();
+  const auto cold = nlohmann::json::parse(kerf(simulate + " --save-state '" + state + "'").out);
+  EXPECT_FALSE(cold.contains("chained"));
+  const ProcessOutput run = kerf(simulate + " --start-from '" + state + "'");
+  EXPECT_TRUE(nlohmann::json::parse(run.out)["chained"].get<bool>()) << run.err;
+
+  const ProcessOutput deeper = kerf(simulate + " --start-from '" + state + "' --set cut.depth=0.7mm");
+  EXPECT_EQ(deeper.exit_code, 3);
+  EXPECT_THAT(deeper.err, HasSubstr("cut.depth"));
+  EXPECT_EQ(kerf(simulate + " --start-from '" + scene_.string() + "'").exit_code, 3);
+}
+
 TEST_F(CutCommands, SimulateLeavesNothingBehindForABadScene) {
   std::ofstream(scene_, std::ios::app) << "\n[tooool]\nrake = \"45 deg\"\n";
   const ProcessOutput run = kerf("simulate '" + scene_.string() + "' -o '" + (folder_ / "cut.h5").string() + "'");
