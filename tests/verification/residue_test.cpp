@@ -133,7 +133,7 @@ Losses cut(const Scene& scene) {
     now.fill({none, none});
     NodalForces so_far{none, none};
     std::array<Array, 2> velocity;  // projected
-    bool acting = false;                          // between the first forces and their spreading
+    bool acting = false;            // between the first forces and their spreading
     for (const Stage& stage : stages) {
       const std::vector<double> force_x = state.crack.face[above].force_x, force_y = state.crack.face[above].force_y;
       stage.apply(state);
