@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.patches import Polygon
 from matplotlib.tri import Triangulation
 
-from .page import large_unit, with_error
+from .page import finite, large_unit, with_error
 from .style import (ACCENT, ACCENT_LIGHT, ACCENT_PALE, INK, QUIET, SAND, STRAIN, WARM, WARM_LIGHT, figure,
                     light_grid, svg)
 

@@ -114,7 +114,7 @@ def facts_of(result):
 
 
 def facts_of_specimen(result):
-    kept = ("verdict", "mode I share", "fracture energy", "ledger’s residue", "wall time")
+    kept = ("verdict", "mode I share", "ledger’s residue", "wall time")
     facts = [fact for fact in facts_of(result) if fact[0] in kept]
     curve = result["r_curve"]
     return [facts[0][:2] + ("",), ("crack extension", f"{number(curve['extension'][-1])} mm", ""),

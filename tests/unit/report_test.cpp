@@ -221,6 +221,25 @@ TEST_F(Report, ShowsASingleCut) {
   EXPECT_EQ(count(html, "<svg "), 3U);
 }
 
+TEST_F(Report, ShowsASpecimen) {
+  forward::CutResult pulled = forward::sample_cut();
+  pulled.is_specimen = true;
+  pulled.faces = {};
+  for (std::size_t i = 0; i < pulled.history.size(); ++i) {
+    const double grown = 0.5 * static_cast<double>(i);
+    pulled.history[i].extension = {
+        .opening = 0.1 * grown, .crack = grown, .release = 0.03 * grown, .at_notch_I = 0.031 * grown};
+  }
+  const fs::path h5 = folder_ / "pulled.h5";
+  write_cut(h5, Document::load(fs::path(KERF_SOURCE_DIR) / "data/scenes/dcb_rcurve.toml"), pulled);
+  const ProcessOutput run = run_kerf("report '" + h5.string() + "'", folder_);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const std::string html = content_of(folder_ / "pulled.html");
+  expect_self_contained(html);
+  EXPECT_THAT(html, HasSubstr("crack grew by 19.5 mm"));
+  EXPECT_EQ(count(html, "<svg "), 3U);
+}
+
 TEST_F(Report, ShowsARefusedCutThatNeverMoved) {
   forward::CutResult nothing;
   nothing.refusals = {"broke down at step 3"};
