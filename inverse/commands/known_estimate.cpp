@@ -69,7 +69,12 @@ void with_known_estimate(const fs::path& job_or_folder, const std::string& code,
                                    job_or_folder.string(), job_or_folder.string()));
     Folder folder = Folder::open(job_or_folder, {}, code);
     ChildRuns runs(run_command(), folder.path() / "runs", folder.job().budget, [] { return false; });
-    RunDatabase database(folder.journal(), code, std::ref(runs), folder.job().budget.parallel);
+    const auto tell = [](const RunRequest& request, const RunRecord& record) {
+      fmt::print(stderr, "  {}: {} ({:.1f} s)\n", request.label, record.accepted ? "simulated" : "refused",
+                 record.wall_seconds);
+    };
+    RunDatabase database(folder.journal(), code, std::ref(runs), folder.job().budget.parallel,
+                         {.batch_begins = {}, .run_ends = tell});
     const Calibration calibration = calibrate(folder.job(), database);
     Job job = folder.job();
     job.optimiser = calibration.choice;  // whose steps the journal has
