@@ -6,54 +6,20 @@ A curve of 3 rakes x 3 depths is simulated with known yield stress, toughness an
 smallest that any found (one standard error of one parameter) and once until it stops by itself or its budget ends:
 simulated fine and coarse cuts, fine-curve equivalents (core-seconds over those of one fine curve) and core-seconds.
 
-    scripts/optimisers.py -o DIR [--fine 6] [--coarse 3] [--seed 1] [--curves 150] [--methods NAME ...]
+    scripts/optimisers.py -o DIR [--fine 6] [--coarse 3] [--seed 1] [--curves 60] [--methods NAME ...]
 
-DIR keeps the jobs; what is there is not run again. Takes some twenty minutes on two cores.
+DIR keeps the jobs; what is there is not run again. Takes some fifty minutes on two cores, the global searches most of them.
 """
 import argparse
 import json
 import pathlib
 import random
+import re
 import subprocess
 import sys
 
-SCENE = """title = "twin"
-[material]
-law = "j2"
-elastic_modulus = "1000 MPa"
-poisson_ratio = 0.33
-density = "1 g/cm^3"
-yield_stress = "25 MPa"
-[cohesive]
-[cohesive.mode_I]
-law = "cubic"
-strength = "30 MPa"
-toughness = "2000 J/m^2"
-[cohesive.mode_II]
-law = "cubic"
-strength = "30 MPa"
-toughness = "2000 J/m^2"
-[cut]
-depth = "0.5 mm"
-speed = "20 m/s"
-ramp = "0.04 ms"
-travel = 8
-[tool]
-rake = "30 deg"
-[friction]
-coefficient = 0.2
-[pic_damping]
-rate = 0.025
-[window]
-ahead = 4
-behind = 2
-below = 3
-above = 3
-[resolution]
-cells_through_chip = {cells}
-[steady_state]
-not_before = 8
-"""
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+SCENE = (ROOT / "tests/recovery/twin.toml").read_text()
 
 JOB = """title = "twin, 3 rakes x 3 depths"
 scene = "scene.toml"
@@ -111,6 +77,14 @@ def run(command, log=None):
     return process.stdout
 
 
+def with_values(text, **values):
+    """The text with `key = value` in the place of every key's line."""
+    for key, value in values.items():
+        text, count = re.subn(rf"(?m)^{key} = .*$", f"{key} = {value}", text)
+        assert count == 1, f"{key} stands {count} times"
+    return text
+
+
 def measure(kerf, folder, cells, seed):
     """Simulates the truth with fine cells and writes one noisy curve per rake; core-seconds of all of it."""
     noise = random.Random(seed)
@@ -118,8 +92,8 @@ def measure(kerf, folder, cells, seed):
     for rake in RAKES:
         rows = [f"#: rake = {rake} deg", "depth[mm],Fc[N/m],Fc_sd[N/m],Ft[N/m],Ft_sd[N/m]"]
         for depth in DEPTHS:
-            scene = SCENE.format(cells=cells).replace('"0.5 mm"', f'"{depth} mm"').replace('"30 deg"', f'"{rake} deg"')
-            (folder / "truth.toml").write_text(scene)
+            (folder / "truth.toml").write_text(with_values(SCENE, cells_through_chip=cells, depth=f'"{depth} mm"',
+                                                           rake=f'"{rake} deg"'))
             cut = json.loads(run([kerf, "simulate", folder / "truth.toml", "-o", folder / "truth.h5", "--json"]))
             core_seconds += cut["cost"]["processor_s"]
             error = NOISE * cut["F_c"]["value"]
@@ -127,7 +101,7 @@ def measure(kerf, folder, cells, seed):
             rows.append(f"{depth},{F_c:.6g},{error:.6g},{F_t:.6g},{error:.6g}")
         (folder / f"rake_{rake}.csv").write_text("\n".join(rows) + "\n")
         blocks += f'[[curve]]\nfile = "rake_{rake}.csv"\n'
-    (folder / "scene.toml").write_text(SCENE.format(cells=cells))
+    (folder / "scene.toml").write_text(with_values(SCENE, cells_through_chip=cells))
     (folder / "measured.json").write_text(json.dumps({"core_s_per_curve": core_seconds, "curves": blocks}))
 
 
@@ -165,7 +139,7 @@ def main():
     parser.add_argument("--fine", type=int, default=6)
     parser.add_argument("--coarse", type=int, default=3)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--curves", type=int, default=150, help="budget of a search in curves")
+    parser.add_argument("--curves", type=int, default=60, help="budget of a search in curves")
     parser.add_argument("--methods", nargs="+", default=list(METHODS), choices=list(METHODS))
     options = parser.parse_args()
     folder = options.output

@@ -15,9 +15,9 @@ import pathlib
 import subprocess
 import sys
 
-from optimisers import DEPTHS, JOB, RAKES, SCENE, measure
+from optimisers import JOB, measure
 
-TRUTH = {"yield_stress": 25, "toughness": 2000, "friction": 0.2}  # MPa, J/m^2, 1: those of SCENE
+TRUTH = {"yield_stress": 25, "toughness": 2000, "friction": 0.2}  # MPa, J/m^2, 1: those of the scene
 # By hand, instead of a noise audit for every trial.
 OPTIMISER = '[optimiser]\nmethod = "gauss_newton"\nstep = 0.1\nnoise = 0.001\n'
 
@@ -50,7 +50,7 @@ def main():
     parser.add_argument("--parallel", type=int, default=2, help="simulations at a time")
     options = parser.parse_args()
     options.output.mkdir(parents=True, exist_ok=True)
-    held, converged, scaled = dict.fromkeys(TRUTH, 0), 0, 0
+    held, converged = dict.fromkeys(TRUTH, 0), 0
     for trial in range(1, options.trials + 1):
         result = calibrate(options.kerf, options.output, options.cells, trial, options.parallel)
         converged += result["converged"]
