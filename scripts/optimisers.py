@@ -105,6 +105,12 @@ def measure(kerf, folder, cells, seed):
     (folder / "measured.json").write_text(json.dumps({"core_s_per_curve": core_seconds, "curves": blocks}))
 
 
+def is_finished(folder):
+    """Whether a calibration ended by itself: one that was stopped leaves a partial result."""
+    result = folder / "result.json"
+    return result.exists() and not json.loads(result.read_text()).get("partial")
+
+
 class Search:
     """A finished calibration: its journal in order, and chi^2 after so many runs."""
 
@@ -150,7 +156,7 @@ def main():
 
     searches = {}
     for name in options.methods:
-        if not (folder / name / "result.json").exists():
+        if not is_finished(folder / name):
             job = JOB.format(curves=measured["curves"], max_runs=options.curves * len(RAKES) * len(DEPTHS))
             (folder / f"{name}.toml").write_text(job + METHODS[name][0].replace("{coarse}", str(options.coarse)))
             print(f"{name} ...", file=sys.stderr, flush=True)

@@ -15,7 +15,7 @@ import pathlib
 import subprocess
 import sys
 
-from optimisers import JOB, measure
+from optimisers import JOB, is_finished, measure
 
 TRUTH = {"yield_stress": 25, "toughness": 2000, "friction": 0.2}  # MPa, J/m^2, 1: those of the scene
 # By hand, instead of a noise audit for every trial.
@@ -25,7 +25,7 @@ OPTIMISER = '[optimiser]\nmethod = "gauss_newton"\nstep = 0.1\nnoise = 0.001\n'
 def calibrate(kerf, folder, cells, trial, parallel):
     """The result of one trial, from its folder if it is finished."""
     place = folder / f"trial_{trial}"
-    if not (place / "out/result.json").exists() or json.loads((place / "out/result.json").read_text()).get("partial"):
+    if not is_finished(place / "out"):
         place.mkdir(exist_ok=True)
         if not (place / "measured.json").exists():
             measure(kerf, place, cells, trial)
