@@ -121,10 +121,12 @@ class Search:
                      for line in lines if "run" in line]
 
     def fine_trace(self):
-        return [entry for entry in self.result["trace"] if not entry["step"].startswith("coarse")]
+        """What was reached with every cut: chi^2 of fewer cuts is smaller, of none zero."""
+        return [entry for entry in self.result["trace"] if not entry["step"].startswith("coarse")
+                and entry["chi2"] is not None and not entry["failed_cuts"]]
 
     def best(self):
-        return min(entry["chi2"] for entry in self.fine_trace() if entry["chi2"] is not None)
+        return min(entry["chi2"] for entry in self.fine_trace())
 
     def cost(self, runs):
         spent = self.runs[:runs]
@@ -133,7 +135,7 @@ class Search:
 
     def reach(self, chi2):
         for entry in self.fine_trace():
-            if entry["chi2"] is not None and entry["chi2"] <= chi2:
+            if entry["chi2"] <= chi2:
                 return entry["runs"]
         return None
 
