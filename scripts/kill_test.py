@@ -17,8 +17,9 @@ import sys
 import tempfile
 import time
 
-SCENE, JOB = re.findall(r'R"\((.*?)\)"', (pathlib.Path(__file__).parents[1] / "tests/recovery/twin_scene.hpp").read_text(),
-                        re.S)
+TWIN = pathlib.Path(__file__).parents[1] / "tests/recovery"
+SCENE = (TWIN / "twin.toml").read_text()
+[JOB] = re.findall(r'R"\((.*?)\)"', (TWIN / "twin_scene.hpp").read_text(), re.S)
 ERRORS = 0.02  # of the measured forces, relative
 
 SIMULATOR = """#!/usr/bin/env python3

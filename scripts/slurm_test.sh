@@ -73,7 +73,8 @@ done
 python3 - "$project" "$place" << 'INPUTS'
 import pathlib, re, sys
 project, place = map(pathlib.Path, sys.argv[1:])
-scene, job = re.findall(r'R"\((.*?)\)"', (project / "tests/recovery/twin_scene.hpp").read_text(), re.S)
+scene = (project / "tests/recovery/twin.toml").read_text()
+[job] = re.findall(r'R"\((.*?)\)"', (project / "tests/recovery/twin_scene.hpp").read_text(), re.S)
 (place / "scene.toml").write_text(scene)
 (place / "job.toml").write_text(job)
 (place / "curve.csv").write_text("#: rake = 30 deg\ndepth[mm],Fc[N/mm],Fc_sd[N/mm],Ft[N/mm],Ft_sd[N/mm]\n0.5,10.8,0.3,-4.3,0.2\n")

@@ -8,7 +8,8 @@ import sys
 import tempfile
 
 here = pathlib.Path(__file__).parent
-SCENE, JOB = re.findall(r'R"\((.*?)\)"', (here / "twin_scene.hpp").read_text(), re.S)
+SCENE = (here / "twin.toml").read_text()
+[JOB] = re.findall(r'R"\((.*?)\)"', (here / "twin_scene.hpp").read_text(), re.S)
 TRUTH = {"yield_stress": 25.0, "friction": 0.2}
 
 
