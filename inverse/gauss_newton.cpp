@@ -74,7 +74,9 @@ class GaussNewton {
 
   /// Nothing worthwhile lies within the radius. Beyond it, where earlier steps had failed, there may be.
   void conclude(double known_chi2) {
-    if (!comparable(objective_, model_.known())) return stop(false, "the differences of too many cuts failed");
+    const auto simulated = static_cast<double>(count(here().usable));
+    if (static_cast<double>(count(model_.known())) < (1.0 - objective_.budget().failing_share) * simulated)
+      return stop(false, "the differences of too many cuts failed");
     const double beyond = known_chi2 - propose(objective_, model_, largest_radius).chi2;
     if (beyond <= std::max(worthwhile(), standard_error_squared))
       return stop(true, "no step promises a decrease that could be told from noise");
