@@ -7,7 +7,7 @@
 namespace kerf::inverse {
 namespace {
 
-constexpr double rounding = 1e-6;  // roughness of what is called smooth
+constexpr double rounding = 1e-5;  // roughness of what is called smooth
 
 }  // namespace
 
@@ -22,27 +22,33 @@ QuadraticResponse::QuadraticResponse(const Eigen::MatrixXd& steps, double roughn
   Eigen::VectorXd prior = Eigen::VectorXd::Constant(terms, usual_curvature * usual_curvature);
   prior.head(n).setConstant(any_slope * any_slope);
 
-  const double rough = std::pow(std::max(roughness, rounding), 2);
+  const double rough = std::pow(std::max(roughness, rounding), 2), third = usual_third_order / 6;
   const Eigen::MatrixXd roughnesses =
       rough * (Eigen::MatrixXd::Identity(runs, runs) + Eigen::MatrixXd::Ones(runs, runs));
-  Eigen::MatrixXd covariance = design * prior.asDiagonal() * design.transpose() + roughnesses;
-  const double third = usual_third_order / 6;
-  covariance.array() += third * third * (steps * steps.transpose()).array().cube();
-  precision_ = covariance;
-  if (runs > 0) precision_ = covariance.ldlt().solve(Eigen::MatrixXd::Identity(runs, runs));
-  mean_ = prior.asDiagonal() * design.transpose() * precision_;
+  Eigen::MatrixXd errors = roughnesses;
+  errors.array() += third * third * (steps * steps.transpose()).array().cube();
 
+  // Information adds up without the cancellation that a difference of covariances would suffer.
+  weights_ = errors;
+  if (runs > 0) weights_ = errors.ldlt().solve(Eigen::MatrixXd::Identity(runs, runs));
+  information_of_priors_ = prior.cwiseInverse();
+  Eigen::MatrixXd information = design.transpose() * weights_ * design;
+  information.diagonal() += information_of_priors_;
+  const Eigen::MatrixXd covariance = information.ldlt().solve(Eigen::MatrixXd::Identity(terms, terms));
+  mean_ = covariance * design.transpose() * weights_;
+  slope_errors_ = covariance.diagonal().head(n).cwiseMax(0).cwiseSqrt();
   const Eigen::MatrixXd of_slopes = mean_.topRows(n);
-  const Eigen::VectorXd explained = (of_slopes * steps).diagonal().cwiseProduct(prior.head(n));
-  slope_errors_ = (prior.head(n) - explained).cwiseMax(0).cwiseSqrt();
   rough_covariance_ = Eigen::MatrixXd::Zero(n, n);
   if (roughness > 0) rough_covariance_ = of_slopes * roughnesses * of_slopes.transpose();
+  design_ = std::move(design);
 }
 
 double QuadraticResponse::surprise(const Eigen::VectorXd& changes) const {
   const auto beyond_slopes = static_cast<double>(changes.size() - parameters_);
   if (beyond_slopes <= 0) return 1;
-  return std::sqrt(std::max(1.0, changes.dot(precision_ * changes) / beyond_slopes));
+  const Eigen::VectorXd terms = mean_ * changes, left = changes - design_ * terms;
+  const double unlikely = left.dot(weights_ * left) + terms.cwiseAbs2().dot(information_of_priors_);
+  return std::sqrt(std::max(1.0, unlikely / beyond_slopes));
 }
 
 Eigen::VectorXd QuadraticResponse::slopes(const Eigen::VectorXd& changes) const {

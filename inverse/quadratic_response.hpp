@@ -34,8 +34,10 @@ class QuadraticResponse {
 
  private:
   Eigen::Index parameters_;
-  Eigen::MatrixXd precision_;  ///< inverse of the covariance that is expected of the changes
-  Eigen::MatrixXd mean_;       ///< (slopes, then H_00, H_10, H_11, H_20 ...) from the changes
+  Eigen::MatrixXd design_;   ///< changes from the terms of (1)
+  Eigen::MatrixXd weights_;  ///< inverse of the covariance of the errors in (1)
+  Eigen::VectorXd information_of_priors_;
+  Eigen::MatrixXd mean_;  ///< (slopes, then H_00, H_10, H_11, H_20 ...) from the changes
   Eigen::VectorXd slope_errors_;
   Eigen::MatrixXd rough_covariance_;
 };
