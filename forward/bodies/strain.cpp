@@ -56,14 +56,7 @@ void strain_points(State& state, Body& body, const Law& law, const Stroke& strok
   bool sound = true;
   for (std::size_t first = 0; first < p.size(); first += lane_count) {
     const StencilOf<Shape> stencil(grid, load(&p.kernel_x(frame)[first]), load(&p.kernel_y(frame)[first]), shape);
-    const auto [value, rise] = stencil.value_and_rise(velocity.data());
-    Lanes xx{}, xy{}, yx{}, yy{};
-    for (std::size_t i = 0; i < 3; ++i) {
-      xx += stencil.slope_x[i] * value[2 * i];
-      yx += stencil.slope_x[i] * value[2 * i + 1];
-      xy += stencil.weight_x[i] * rise[2 * i];
-      yy += stencil.weight_x[i] * rise[2 * i + 1];
-    }
+    const auto [xx, xy, yx, yy] = stencil.gradient(velocity.data());
     const Gradient F = load_gradient(p, first);
     // dt dv/dX = dF, or dt dv/dx = l; dF = l F.
     const Gradient rate{strain_x * xx, strain_y * xy, strain_x * yx, strain_y * yy};

@@ -130,6 +130,18 @@ struct StencilOf {
     }
     return {columns_of(sums), columns_of(rises)};
   }
+  /// Of a nodal vector field by x and y, in cells: d_x of its x part, d_y of it, d_x of its y part, d_y of it.
+  std::array<Lanes, 4> gradient(const double* nodal) const {
+    const auto [value, rise] = value_and_rise(nodal);
+    Lanes xx{}, xy{}, yx{}, yy{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      xx += slope_x[i] * value[2 * i];
+      yx += slope_x[i] * value[2 * i + 1];
+      xy += weight_x[i] * rise[2 * i];
+      yy += weight_x[i] * rise[2 * i + 1];
+    }
+    return {xx, xy, yx, yy};
+  }
   /// A nodal vector field at the particles.
   std::array<Lanes, 2> sum(const double* nodal) const {
     const std::array<Lanes, 6> of = value(nodal);

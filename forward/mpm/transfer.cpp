@@ -106,14 +106,7 @@ void stress_particles(State& state, const Law& material) {
           stencil.prefetch<2>(field.velocity.data());
           stencil.prefetch<2>(field.force.data());
         }
-        const auto [value, rise] = stencil.value_and_rise(field.velocity.data());
-        Lanes xx{}, xy{}, yx{}, yy{};
-        for (std::size_t i = 0; i < 3; ++i) {
-          xx += stencil.slope_x[i] * value[2 * i];
-          yx += stencil.slope_x[i] * value[2 * i + 1];
-          xy += stencil.weight_x[i] * rise[2 * i];
-          yy += stencil.weight_x[i] * rise[2 * i + 1];
-        }
+        const auto [xx, xy, yx, yy] = stencil.gradient(field.velocity.data());
         strains[b] = {.xx = strain_x * xx, .xy = strain_y * xy, .yx = strain_x * yx, .yy = strain_y * yy};
       }
       for (std::size_t b = 0; b < batches; ++b) {
