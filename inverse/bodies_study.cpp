@@ -94,35 +94,15 @@ BodiesFindings bodies_findings(const Study& study, std::vector<std::optional<Run
 
 std::vector<Column> bodies_study_columns(const Study& study, const BodiesFindings& findings) {
   std::vector<Column> columns{
-      {"run", "1", {}},          {"knob", "1", {}},           {"value", "1", {}},   {"unit", "1", {}},
-      {"verdict", "1", {}},      {findings.result, "1", {}},  {"error", "%", {}},   {"front", "1", {}},
-      {"core_seconds", "s", {}}, {"particle_steps", "1", {}}, {"refusals", "1", {}}};
-  if (findings.result.empty()) columns[5].name = "result";
+      {findings.result.empty() ? "result" : findings.result, "1", {}}, {"error", "%", {}}, {"front", "1", {}}};
   for (std::size_t run = 0; run < study.runs.size(); ++run) {
     const std::optional<RunRecord>& record = findings.records[run];
     const std::optional<WorkPrecision>& p = findings.precision[run];
-    const StudyRun& what = study.runs[run];
-    const auto cost = [&](const char* key) {
-      return record && record->result.contains("cost") ? record->result.at("cost").value(key, Json(nullptr))
-                                                       : Json(nullptr);
-    };
-    const std::vector<Json> cells{
-        run + 1,
-        role_of(study, run),
-        what.number          ? Json(*what.number)
-        : what.value.empty() ? Json(nullptr)
-                             : Json(what.value),
-        what.knob && study.knobs[*what.knob].unit != "1" ? Json(study.knobs[*what.knob].unit) : Json(nullptr),
-        verdict_of(record),
-        record ? finite(found_in(*record, findings.result)) : Json(nullptr),
-        p ? finite(percent * p->result->value) : Json(nullptr),
-        p ? Json(p->front) : Json(nullptr),
-        cost("processor_s"),
-        cost("particle_steps"),
-        record ? Json(fmt::format("{}", fmt::join(record->refusals, "; "))) : Json(nullptr)};
-    for (std::size_t c = 0; c < columns.size(); ++c) columns[c].cells.push_back(cells[c]);
+    columns[0].cells.push_back(record ? finite(found_in(*record, findings.result)) : Json(nullptr));
+    columns[1].cells.push_back(p ? finite(percent * p->result->value) : Json(nullptr));
+    columns[2].cells.push_back(p ? Json(p->front) : Json(nullptr));
   }
-  return columns;
+  return study_frame_columns(study, findings.records, std::move(columns));
 }
 
 Json bodies_study_json(const Study& study, const BodiesFindings& findings, double wall_seconds, const Json& manifest) {

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
 
 #include "forward/scene/scene.hpp"
@@ -90,50 +92,52 @@ StudyFindings study_findings(const Study& study, std::vector<std::optional<RunRe
   return findings;
 }
 
-std::vector<Column> study_columns(const Study& study, const StudyFindings& findings) {
+std::vector<Column> study_frame_columns(const Study& study, const std::vector<std::optional<RunRecord>>& records,
+                                        std::vector<Column> found) {
   std::vector<Column> columns{
-      {"run", "1", {}},          {"knob", "1", {}},           {"value", "1", {}},        {"unit", "1", {}},
-      {"verdict", "1", {}},      {"F_c", "N/m", {}},          {"F_c_se", "N/m", {}},     {"F_t", "N/m", {}},
-      {"F_t_se", "N/m", {}},     {"error_F_c", "%", {}},      {"error_F_c_se", "%", {}}, {"error_F_t", "%", {}},
-      {"error_F_t_se", "%", {}}, {"error", "%", {}},          {"resolved", "1", {}},     {"front", "1", {}},
-      {"core_seconds", "s", {}}, {"particle_steps", "1", {}}, {"refusals", "1", {}}};
+      {"run", "1", {}}, {"knob", "1", {}}, {"value", "1", {}}, {"unit", "1", {}}, {"verdict", "1", {}}};
+  std::vector<Column> costs{{"core_seconds", "s", {}}, {"particle_steps", "1", {}}, {"refusals", "1", {}}};
+  for (std::size_t run = 0; run < study.runs.size(); ++run) {
+    const std::optional<RunRecord>& record = records[run];
+    const StudyRun& what = study.runs[run];
+    const Json cost = record && record->result.contains("cost") ? record->result.at("cost") : Json::object();
+    columns[0].cells.push_back(run + 1);
+    columns[1].cells.push_back(role_of(study, run));
+    columns[2].cells.push_back(what.number          ? Json(*what.number)
+                               : what.value.empty() ? Json(nullptr)
+                                                    : Json(what.value));
+    columns[3].cells.push_back(what.knob && study.knobs[*what.knob].unit != "1" ? Json(study.knobs[*what.knob].unit)
+                                                                                : Json(nullptr));
+    columns[4].cells.push_back(verdict_of(record));
+    costs[0].cells.push_back(cost.value("processor_s", Json(nullptr)));
+    costs[1].cells.push_back(cost.value("particle_steps", Json(nullptr)));
+    costs[2].cells.push_back(record ? Json(fmt::format("{}", fmt::join(record->refusals, "; "))) : Json(nullptr));
+  }
+  for (std::vector<Column>* more : {&found, &costs}) std::move(more->begin(), more->end(), std::back_inserter(columns));
+  return columns;
+}
+
+std::vector<Column> study_columns(const Study& study, const StudyFindings& findings) {
+  std::vector<Column> columns{{"F_c", "N/m", {}},     {"F_c_se", "N/m", {}},     {"F_t", "N/m", {}},
+                              {"F_t_se", "N/m", {}},  {"error_F_c", "%", {}},    {"error_F_c_se", "%", {}},
+                              {"error_F_t", "%", {}}, {"error_F_t_se", "%", {}}, {"error", "%", {}},
+                              {"resolved", "1", {}},  {"front", "1", {}}};
   const double one = consistent_units_in("N/m");
   for (std::size_t run = 0; run < study.runs.size(); ++run) {
     const std::optional<RunRecord>& record = findings.records[run];
     const std::optional<WorkPrecision>& p = findings.precision[run];
-    const StudyRun& what = study.runs[run];
     const bool told = has_forces(record);
     const auto force = [&](double value) { return told ? finite(value / one) : Json(nullptr); };
     const auto share = [&](double value) { return p ? finite(percent * value) : Json(nullptr); };
-    const auto cost = [&](const char* key) {
-      return told && record->result.contains("cost") ? record->result.at("cost").value(key, Json(nullptr))
-                                                     : Json(nullptr);
-    };
-    const std::vector<Json> cells{
-        run + 1,
-        role_of(study, run),
-        what.number          ? Json(*what.number)
-        : what.value.empty() ? Json(nullptr)
-                             : Json(what.value),
-        what.knob && study.knobs[*what.knob].unit != "1" ? Json(study.knobs[*what.knob].unit) : Json(nullptr),
-        verdict_of(record),
-        force(record ? record->F_c.value : 0),
-        force(record ? record->F_c.standard_error : 0),
-        force(record ? record->F_t.value : 0),
-        force(record ? record->F_t.standard_error : 0),
-        share(p ? p->F_c.value : 0),
-        share(p ? p->F_c.standard_error : 0),
-        share(p ? p->F_t.value : 0),
-        share(p ? p->F_t.standard_error : 0),
-        share(p ? p->error().value : 0),
-        p ? Json(p->resolved()) : Json(nullptr),
-        p ? Json(p->front) : Json(nullptr),
-        cost("processor_s"),
-        cost("particle_steps"),
-        record ? Json(fmt::format("{}", fmt::join(record->refusals, "; "))) : Json(nullptr)};
+    const std::vector<Json> cells{force(record ? record->F_c.value : 0), force(record ? record->F_c.standard_error : 0),
+                                  force(record ? record->F_t.value : 0), force(record ? record->F_t.standard_error : 0),
+                                  share(p ? p->F_c.value : 0),           share(p ? p->F_c.standard_error : 0),
+                                  share(p ? p->F_t.value : 0),           share(p ? p->F_t.standard_error : 0),
+                                  share(p ? p->error().value : 0),       p ? Json(p->resolved()) : Json(nullptr),
+                                  p ? Json(p->front) : Json(nullptr)};
     for (std::size_t c = 0; c < columns.size(); ++c) columns[c].cells.push_back(cells[c]);
   }
-  return columns;
+  return study_frame_columns(study, findings.records, std::move(columns));
 }
 
 Json study_frame_json(const Study& study, const std::vector<std::optional<RunRecord>>& records,

@@ -28,7 +28,10 @@ std::vector<Column> study_columns(const Study& study, const StudyFindings& findi
 nlohmann::ordered_json study_json(const Study& study, const StudyFindings& findings, double wall_seconds,
                                   const nlohmann::ordered_json& manifest);
 
-/// What studies of cuts and of bodies have in common: knobs, runs with what `error` says of each, and costs.
+/// What studies of cuts and of bodies have in common: every run is a row with what was turned, what was `found`, costs.
+std::vector<Column> study_frame_columns(const Study& study, const std::vector<std::optional<RunRecord>>& records,
+                                        std::vector<Column> found);
+/// The same for machines: knobs, runs with what `error` says of each, and costs.
 nlohmann::ordered_json study_frame_json(const Study& study, const std::vector<std::optional<RunRecord>>& records,
                                         const std::function<nlohmann::ordered_json(std::size_t run)>& error,
                                         double wall_seconds, const nlohmann::ordered_json& manifest);
