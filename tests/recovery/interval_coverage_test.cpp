@@ -4,11 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <memory>
 
 #include "inverse/closed_form_cut.hpp"
 #include "inverse/coverage.hpp"
 #include "inverse/next_cut.hpp"
-#include "tests/unit/synthetic_cut.hpp"
+#include "tests/unit/modelled_cut.hpp"
 
 namespace kerf {
 namespace {
@@ -57,32 +58,18 @@ TEST(IntervalCoverage, HoldsTheTruthIn95PercentOfTheTrials) {
 }
 
 /// Slopes of a job's cuts at the truth.
-struct Slopes {
-  explicit Slopes(const inverse::Job& of)
-      : job(of),
-        space(job),
-        misfit(job, space),
-        journal(folder / "journal.jsonl"),
-        database(journal, "test", inverse::closed_form_cut, 1),
-        objective(job, space, misfit, database, 100000),
-        model(inverse::LocalModel::by_differences(objective, objective.evaluate(truth()))) {}
-  Eigen::VectorXd truth() const {
-    Eigen::VectorXd point(space.dimension());
-    point << space.coordinate(0, 60), space.coordinate(1, 2), space.coordinate(2, 0.3);
-    return point;
-  }
+struct Slopes : testing::ModelledCut {
+  explicit Slopes(const inverse::Job& of) : Slopes(of, std::make_shared<TemporaryFolder>()) {}
   double error_of(const std::string& name) const {
     return inverse::identify(model, misfit, space).find(name)->standard_error;
   }
 
-  TemporaryFolder folder;
-  inverse::Job job;
-  inverse::ParameterSpace space;
-  inverse::Misfit misfit;
-  inverse::Journal journal;
-  inverse::RunDatabase database;
-  inverse::Objective objective;
+  std::shared_ptr<TemporaryFolder> folder;
   inverse::LocalModel model;
+
+ private:
+  Slopes(const inverse::Job& of, const std::shared_ptr<TemporaryFolder>& place)
+      : ModelledCut(of, *place / "journal.jsonl", inverse::closed_form_cut), folder(place), model(about(truth())) {}
 };
 
 TEST(NextCut, ShrinksTheErrorAsItsJacobianPredicts) {

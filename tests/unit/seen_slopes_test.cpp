@@ -7,7 +7,7 @@
 #include <bit>
 
 #include "inverse/seen_slopes.hpp"
-#include "tests/unit/synthetic_cut.hpp"
+#include "tests/unit/modelled_cut.hpp"
 
 namespace kerf {
 namespace {
@@ -53,30 +53,15 @@ double about_strength(const Eigen::Matrix4d& information) {
   return information(3, 3) - along.dot(others.ldlt().solve(along));
 }
 
-struct Differences {
+struct Differences : testing::ModelledCut {
   Differences(const inverse::Job& job, unsigned seed, const std::filesystem::path& file)
-      : space(job),
-        misfit(job, space),
-        journal(file),
-        database(journal, "test", rough(seed), 1),
-        objective(job, space, misfit, database, 1000000),
-        raw(inverse::LocalModel::by_differences(objective, objective.evaluate(truth()))) {}
+      : ModelledCut(job, file, rough(seed)), raw(about(truth())) {}
 
-  Eigen::VectorXd truth() const {
-    Eigen::VectorXd point(4);
-    for (Eigen::Index j = 0; j < 4; ++j) point[j] = space.coordinate(j, std::array{60.0, 2.0, 0.3, 40.0}[j]);
-    return point;
-  }
   Eigen::MatrixXd information(const inverse::LocalModel& model) const {
     const Eigen::MatrixXd jacobian = inverse::residual_slopes(model, misfit, truth(), 0);
     return jacobian.transpose() * jacobian;
   }
 
-  inverse::ParameterSpace space;
-  inverse::Misfit misfit;
-  inverse::Journal journal;
-  inverse::RunDatabase database;
-  inverse::Objective objective;
   inverse::LocalModel raw;
 };
 

@@ -53,6 +53,16 @@ inline forward::CutResult synthetic_cut(const forward::Scene& scene) {
   return result;
 }
 
+/// A cut whose force halves when the crack runs ahead of the tool, as soft materials do.
+inline forward::CutResult two_branches(const forward::Scene& scene) {
+  forward::CutResult result = synthetic_cut(scene);
+  if (std::sqrt(3.0) * laws::shear_yield(scene.material) > 61) {
+    result.branch = forward::Branch::bending;
+    result.F_c.value *= 0.5;
+  }
+  return result;
+}
+
 /// Refuses a fixed `share` of all scenes, picked by their numbers: the same scene fails every time.
 inline inverse::Simulator failing(double share, inverse::Simulator simulate) {
   return [share, simulate = std::move(simulate)](const forward::Scene& scene) {

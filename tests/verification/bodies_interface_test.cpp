@@ -112,16 +112,7 @@ Swing swing_on_springs(double D, double cell) {
     return sum;
   };
   constexpr int periods = 10;
-  std::vector<double> crossings, energy;
-  double before = 0;
-  while (trial.state.time < (periods + 0.75) * period) {
-    trial.step();
-    const double now = apart();
-    if (before > 0.0 && now <= 0.0) crossings.push_back(trial.state.time - trial.state.step * now / (now - before));
-    before = now;
-    const Totals all = totals(trial.state);
-    energy.push_back(all.kinetic + all.internal + trial.state.interface_energy);
-  }
+  const auto [crossings, energy] = watch(trial, (periods + 0.75) * period, apart);
   if (crossings.size() < 2) return {.frequency_error = std::nan(""), .energy_kept = 0, .energy_swing = 1};
   const std::size_t one_period = energy.size() * 4 / (4 * periods + 3);
   const auto mean = [&](std::size_t first) {

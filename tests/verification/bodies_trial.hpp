@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <ctime>
+#include <functional>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -81,6 +82,25 @@ inline std::string trial_scene(double length, double height, double cell, const 
       length, height, cell, box, trial_modulus, poisson_ratio, body, options);
 }
 
+/// Times at which an amplitude falls through zero, and all energy, that of an interface included, after every step.
+struct Oscillation {
+  std::vector<double> crossings, energy;
+};
+inline Oscillation watch(Trial& trial, double until, const std::function<double()>& amplitude) {
+  Oscillation seen;
+  double before = 0;
+  while (trial.state.time < until) {
+    trial.step();
+    const double now = amplitude();
+    if (before > 0.0 && now <= 0.0)
+      seen.crossings.push_back(trial.state.time - trial.state.step * now / (now - before));
+    before = now;
+    const Totals all = totals(trial.state);
+    seen.energy.push_back(all.kinetic + all.internal + trial.state.interface_energy);
+  }
+  return seen;
+}
+
 /// How a bar of 10 mm vibrates along itself in its lowest mode: its frequency over the closed form, less one, and what
 /// it keeps of its energy over twenty periods. Held at its left end by a wall, at the other by a wall or free.
 struct Vibration {
@@ -102,16 +122,7 @@ inline Vibration vibrate(int cells, bool free_end, const std::string& options = 
     return all;
   };
   constexpr int periods = 20;
-  std::vector<double> crossings, energy;
-  double before = 0;
-  while (trial.state.time < (periods + 0.25) * period) {
-    trial.step();
-    const double now = amplitude();
-    if (before > 0.0 && now <= 0.0) crossings.push_back(trial.state.time - trial.state.step * now / (now - before));
-    before = now;
-    const Totals all = totals(trial.state);
-    energy.push_back(all.kinetic + all.internal);
-  }
+  const auto [crossings, energy] = watch(trial, (periods + 0.25) * period, amplitude);
   const auto mean = [&](std::size_t first, std::size_t last) {
     double sum = 0;
     for (std::size_t i = first; i < last; ++i) sum += energy[i];

@@ -20,20 +20,26 @@ double capacity(const Scene& scene) {
   return laws::density(scene.material) * scene.thermal->specific_heat;
 }
 
+/// As far as the tool comes in `depths` depths of cut.
+State cut(const Scene& scene, double depths) {
+  State state = lay_out(scene);
+  const std::vector<Stage> stages = plan(scene);
+  double next = scene.cell_length();
+  while (state.tool.x < depths * scene.cut.depth) {
+    for (const Stage& stage : stages) stage.apply(state);
+    state.time += state.step;
+    if (state.tool.x < next) continue;
+    next += scene.cell_length();
+    shift_window(state, scene);
+  }
+  return state;
+}
+
 TEST(Heat, MeanTemperatureTimesHeatCapacityIsTheShareOfThePlasticWork) {
   for (const double conductivity : {0.0, 1e4}) {  // with the second heat creeps by two depths within this cut
     Scene scene = shipped("heat_45", {{"resolution.cells_through_chip", 4}, {"cut.ramp", 0}});
     scene.thermal->conductivity = conductivity;
-    State state = lay_out(scene);
-    const std::vector<Stage> stages = plan(scene);
-    double next = scene.cell_length();
-    while (state.tool.x < 2.5 * scene.cut.depth) {
-      for (const Stage& stage : stages) stage.apply(state);
-      state.time += state.step;
-      if (state.tool.x < next) continue;
-      next += scene.cell_length();
-      shift_window(state, scene);
-    }
+    const State state = cut(scene, 2.5);
     ASSERT_TRUE(state.breakdown.empty()) << state.breakdown;
     ASSERT_EQ(state.work.retired_plastic, 0.0);
     const std::vector<double> T = temperatures(state, scene);
@@ -59,16 +65,7 @@ TEST(Heat, AShareOfTheFrictionStaysInTheWork) {
     Scene scene = shipped("friction_45", {{"resolution.cells_through_chip", 4}, {"cut.ramp", 0}});
     scene.thermal = shipped("heat_45").thermal;
     scene.thermal->friction_share = share;
-    State state = lay_out(scene);
-    const std::vector<Stage> stages = plan(scene);
-    double next = scene.cell_length();
-    while (state.tool.x < 2.0 * scene.cut.depth) {
-      for (const Stage& stage : stages) stage.apply(state);
-      state.time += state.step;
-      if (state.tool.x < next) continue;
-      next += scene.cell_length();
-      shift_window(state, scene);
-    }
+    const State state = cut(scene, 2.0);
     ASSERT_TRUE(state.breakdown.empty()) << state.breakdown;
     ASSERT_EQ(state.work.retired_plastic, 0.0);
     const std::vector<double> T = temperatures(state, scene);
