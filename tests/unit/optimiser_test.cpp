@@ -16,8 +16,8 @@ using testing::replaced;
 using testing::synthetic_cut;
 using testing::TemporaryFolder;
 using testing::Truth;
-using testing::value;
 using testing::two_branches;
+using testing::value;
 using testing::write_job;
 
 const std::vector<double> depths{0.1, 0.2, 0.4, 0.8};
