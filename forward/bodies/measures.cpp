@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "forward/bodies/closed_form.hpp"
+
 namespace kerf::forward::bodies {
 namespace {
 
@@ -58,17 +60,14 @@ void cycle(const BodiesResult& result, const Scene& scene, Json& json) {
   }
   const auto* gas = std::get_if<laws::IdealGas>(&scene.bodies.front().law);
   if (!gas || scene.bodies.size() != 1) return;
+  // p V is -tau, and so is what theory says of it.
+  const std::vector<double> expected = closed_forms(result, scene).at("stress_xx");
   double worst = 0;
   for (std::size_t s = 0; s < scene.strokes.size(); ++s) {
     if (scene.strokes[s].heat != Heat::adiabatic) continue;
     const Span span = span_of(result, s);
-    const auto invariant = [&](const Reading& r) {
-      // p V^gamma with p V = -tau.
-      return -r.stress_xx * std::pow(r.length / scene.length, gas->heat_ratio - 1.0);
-    };
-    const double start = invariant(result.history[span.first]);
-    for (std::size_t i = span.first; i <= span.last; ++i)
-      worst = std::max(worst, std::abs(invariant(result.history[i]) / start - 1.0));
+    for (std::size_t i = span.first + 1; i <= span.last; ++i)
+      worst = std::max(worst, std::abs(result.history[i].stress_xx / expected[i] - 1.0));
   }
   json["pv_gamma_error"] = worst;
 }
@@ -112,12 +111,7 @@ void rubber(const BodiesResult& result, const Scene& scene, Json& json) {
     if (scene.strokes[s].heat != Heat::adiabatic) continue;
     const Span span = span_of(result, s);
     const Reading &begin = result.history[span.first], &end = result.history[span.last];
-    // w of an incompressible strip pulled by lambda, and its nominal stress dw/dlambda at T_0.
-    const auto w = [&](double lambda) {
-      return law->thin ? law->C_1 * (lambda * lambda + 2.0 / lambda - 3.0) +
-                             law->C_2 * (2.0 * lambda + 1.0 / (lambda * lambda) - 3.0)
-                       : (law->C_1 + law->C_2) * (lambda * lambda + 1.0 / (lambda * lambda) - 2.0);
-    };
+    const auto w = [&](double lambda) { return rubber_work(*law, lambda); };
     const double c = law->heat_capacity();
     const double from = begin.length / scene.length, to = end.length / scene.length;
     const double expected = begin.temperature * std::exp((w(to) - w(from)) / (c * law->reference));
@@ -140,25 +134,6 @@ void rubber(const BodiesResult& result, const Scene& scene, Json& json) {
   }
 }
 
-/// Young's modulus along x of a law under the box's conditions (plane strain, free or held across): what a uniform bar
-/// would show. Only isotropic elastic bodies know it.
-double bar_modulus(const laws::BodyLaw& law, bool held_across) {
-  return std::visit(
-      [&](const auto& body) {
-        if constexpr (requires { body.law.lame(); })
-          return held_across ? body.law.lame() + 2.0 * body.law.shear_modulus() : body.law.plane_strain_modulus();
-        else
-          return std::nan("");
-      },
-      law);
-}
-
-double volume_of(const Shape& shape, double cell) {
-  double volume = 0;
-  for (const Part& part : divide(shape, 0.25 * cell, 0.25 * cell)) volume += part.volume;
-  return volume;
-}
-
 void modulus(const BodiesResult& result, const Scene& scene, Json& json) {
   // Mean over the last half of the last stroke, in which the waves of the loading have died away.
   const Span span = span_of(result, scene.strokes.size() - 1);
@@ -171,37 +146,16 @@ void modulus(const BodiesResult& result, const Scene& scene, Json& json) {
     duration += step;
   }
   const double strain = result.history.back().length / scene.length - 1.0;
-  const bool held = scene.walls[top] == Wall::roller && scene.walls[bottom] == Wall::roller;
-  // Layers: Reuss across, Voigt along, and between them the shear, 1/G - 2 nu/E = 2/E.
-  double volume = 0, reuss = 0, voigt = 0;
-  for (const BodyPlan& body : scene.bodies) {
-    const double modulus = bar_modulus(body.law, held), part = volume_of(body.shape, scene.cell);
-    volume += part;
-    reuss += part / modulus;
-    voigt += part * modulus;
-  }
-  reuss /= volume;
-  voigt /= volume;
-  const double stress = impulse / duration / (volume / scene.length);
-  json["effective_modulus"] = stress / strain;
-  double length = 0, cc = 0;
-  if (scene.bodies.size() == 2)
-    for (const EdgePiece& piece : common_edge(scene.bodies[0].shape, scene.bodies[1].shape, scene.cell / 16)) {
-      length += piece.length;
-      cc += piece.length * piece.normal_x * piece.normal_x;
-    }
-  cc = length > 0.0 ? std::min(cc / length, 1.0) : 1.0;
-  const double ss = 1.0 - cc;
-  double compliance = (cc * cc + 2.0 * cc * ss) * reuss + ss * ss / voigt;
-  json["perfect_modulus"] = 1.0 / compliance;
+  const LayeredModulus expected = layered_modulus(scene, strain);
+  const double found = impulse / duration / (expected.volume / scene.length) / strain;
+  json["effective_modulus"] = found;
+  json["perfect_modulus"] = expected.perfect;
   if (scene.interface) {
-    const double D = strain < 0.0 ? scene.interface->compressive : scene.interface->normal;
-    compliance += length / volume * (cc * cc / D + cc * ss / scene.interface->tangential);
-    json["interface_stiffness"] = D;
-    json["interface_angle"] = std::acos(std::sqrt(cc)) * 180.0 / std::numbers::pi;
+    json["interface_stiffness"] = expected.normal_stiffness;
+    json["interface_angle"] = expected.angle * 180.0 / std::numbers::pi;
   }
-  json["closed_form_modulus"] = 1.0 / compliance;
-  json["effective_modulus_error"] = std::abs(stress / strain * compliance - 1.0);
+  json["closed_form_modulus"] = expected.glued;
+  json["effective_modulus_error"] = std::abs(found / expected.glued - 1.0);
 }
 
 void sliding(const BodiesResult& result, const Scene& scene, Json& json) {
@@ -342,9 +296,7 @@ void vibration(const BodiesResult& result, const Scene& scene, Json& json) {
   }
   if (crossings.size() < 2) return;
   const double found = 0.5 * static_cast<double>(crossings.size() - 1) / (crossings.back() - crossings.front());
-  const bool held = scene.walls[top] == Wall::roller && scene.walls[bottom] == Wall::roller;
-  const double density = std::visit([](const auto& law) { return law.mass_density(); }, bar.law);
-  const double expected = std::sqrt(bar_modulus(bar.law, held) / density) / bar.wavelength;
+  const double expected = standing_wave_frequency(scene);
   const Reading& end = result.history.back();
   json["frequency"] = found;
   json["closed_form_frequency"] = expected;

@@ -15,9 +15,8 @@ namespace kerf::forward::bodies {
 ///   first adiabatic stroke: adiabatic_temperature_error against T exp((w - w_0)/(c T_0)) of an incompressible strip,
 ///   and adiabatic_over_isothermal_modulus, chords over its second half, with the closed form beside it
 /// - sliding: acceleration (m/s^2) of the bodies' centre of mass along the lower side of the first rigid body, fitted
-/// to
-///   the second half of the last stroke, that of a block on an incline, g (sin a - mu cos a), and acceleration_error,
-///   their difference over g
+///   to the second half of the last stroke, that of a block on an incline, g (sin a - mu cos a), and
+///   acceleration_error, their difference over g
 /// - hertz: of a cylinder pressed on a flat or on another, force (N/mm), half_width (mm) from the second moment of the
 ///   nodal forces over the second half of the last stroke, peak_pressure (MPa) from their sum over the inner half, and
 ///   their errors against what the force makes of them in Hertz's contact
@@ -27,11 +26,8 @@ namespace kerf::forward::bodies {
 /// - wedge: of a rigid wedge (a slab) that moves into a body, forces along and across its way (N/mm), means over the
 ///   second half of the last stroke, and force_ratio, across over along, against Coulomb's cone about the normal of its
 ///   face, tan(a - atan mu) with the rake a; force_noise, the scatter of the force along about its trend over its mean
-/// - modulus: effective_modulus along x of what lies in the box, and effective_modulus_error against layers whose
-/// normal
-///   stands askew by a, with f_i their shares and A/V the interface's area per volume, c = cos a, s = sin a:
-///   1/E = (c^4 + 2 c^2 s^2) sum f_i/E_i + s^4/(sum f_i E_i) + A/V (c^4/D_n + c^2 s^2/D_t). Exact for layers of one
-///   material, where a bar free at its sides has the same stress everywhere; of several in a wide body with nu = 0
+/// - modulus: effective_modulus along x of what lies in the box, and effective_modulus_error against layered_modulus()
+/// - vibration: frequency (Hz) of a standing wave between walls, its error, and the energy that it lost
 nlohmann::ordered_json measure(const BodiesResult& result, const Scene& scene);
 
 }  // namespace kerf::forward::bodies

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "forward/bodies/closed_form.hpp"
 #include "forward/bodies/measures.hpp"
 #include "forward/bodies/step.hpp"
 #include "forward/bodies/totals.hpp"
@@ -254,6 +255,7 @@ nlohmann::ordered_json result_json(const BodiesResult& result, const Scene& scen
   column("interface", [](const Reading& r) { return r.interface; });
   column("plastic_work", [](const Reading& r) { return r.plastic_work; });
   column("residue", [](const Reading& r) { return r.residue(); });
+  for (const auto& [name, values] : closed_forms(result, scene)) json["closed_forms"][name] = values;
   if (scene.contact) {
     column("gravity_work", [](const Reading& r) { return r.gravity_work; });
     column("rigid_work", [](const Reading& r) { return r.rigid_work; });

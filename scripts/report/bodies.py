@@ -4,9 +4,10 @@ import json
 from dataclasses import dataclass
 
 import numpy as np
+from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 from .cut import Unreadable, svg
-from .style import ACCENT, INK, QUIET, WARM, figure, light_grid
+from .style import ACCENT, INK, QUIET, SAND, WARM, figure, light_grid
 
 STROKE_COLOURS = [WARM, INK, ACCENT, QUIET]
 
@@ -20,6 +21,7 @@ class Bodies:
     refusals: list
     results: dict
     history: dict
+    closed_forms: dict  # columns of the history by theory, nan where it says nothing
     cost: dict
     pressed: dict
 
@@ -27,9 +29,10 @@ class Bodies:
 def read_bodies(file):
     try:
         kept = json.loads(file.read_text(encoding="utf-8"))
-        history = {key: np.array(values, dtype=float) for key, values in kept["history"].items()}
+        history, closed_forms = ({key: np.array(values, dtype=float) for key, values in columns.items()}
+                                 for columns in (kept["history"], kept.get("closed_forms", {})))
         return Bodies(kept["title"], kept["scene"], kept["code_version"], kept["accepted"], kept["refusals"],
-                      kept["results"] or {}, history, kept["cost"], kept.get("pressed", {}))
+                      kept["results"] or {}, history, closed_forms, kept["cost"], kept.get("pressed", {}))
     except (ValueError, KeyError, TypeError) as error:
         raise Unreadable(f"{file}: not what `kerf simulate -o` keeps of bodies ({error})") from error
 
@@ -41,18 +44,81 @@ def _strokes(history):
         yield stroke, part if part[0] == 0 else np.r_[part[0] - 1, part]
 
 
+def _draw_closed_form(axes, x, y):
+    axes.plot(x, y, color=SAND, linewidth=6, solid_capstyle="round", label="closed form")
+
+
+def _stretch(history):
+    """Of the box and its name: in per cent where it is small."""
+    stretch = history["length"] / history["length"][0]
+    if np.ptp(stretch) > 0.1:
+        return stretch, "length / first length"
+    return 100 * (stretch - 1), "stretch, %"
+
+
+def _draw_strokes(axes, bodies, x, y, closed_form=None):
+    """A line per stroke in its colour, on the broad pale one that theory says."""
+    if closed_form is not None:
+        _draw_closed_form(axes, x[1:], closed_form[1:])
+    for stroke, part in _strokes(bodies.history):
+        part = part[part > 0]  # nothing has pushed before the first step
+        axes.plot(x[part], y[part], color=STROKE_COLOURS[(stroke - 1) % 4], linewidth=1.6, label=f"stroke {stroke}")
+    light_grid(axes)
+    axes.legend(frameon=False)
+
+
 def force_picture(bodies):
-    """Piston force against stretch, one colour per stroke."""
+    """Piston force, one colour per stroke: against time where a closed form gives it, else against stretch."""
     h = bodies.history
     fig, axes = figure(860, 360)
-    for stroke, part in _strokes(h):
-        part = part[part > 0]  # nothing has pushed before the first step
-        axes.plot(h["length"][part] / h["length"][0], h["force"][part],
-                  color=STROKE_COLOURS[(stroke - 1) % 4], linewidth=1.8, label=f"stroke {stroke}")
+    closed_form = bodies.closed_forms.get("force")
+    x, name = _stretch(h) if closed_form is None else (h["time"] * 1e3, "time, ms")
+    _draw_strokes(axes, bodies, x, h["force"], closed_form)
+    axes.set(xlabel=name, ylabel="force of the piston, N/mm")
+    return svg(fig, "force of the piston on the bodies")
+
+
+def pressure_picture(bodies):
+    """Pressure against volume of a gas; None of other bodies."""
+    if "stress_xx" not in bodies.closed_forms:
+        return None
+    h = bodies.history
+    volume = h["length"] / h["length"][0]
+    fig, axes = figure(860, 360)
+    _draw_strokes(axes, bodies, volume, -h["stress_xx"] / volume, -bodies.closed_forms["stress_xx"] / volume)
+    axes.set(xscale="log", yscale="log", xlabel="volume / first volume", ylabel="pressure, MPa")
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        axis.set_minor_locator(NullLocator())
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    return svg(fig, "pressure against volume, logarithmic")
+
+
+def temperature_picture(bodies):
+    """Temperature against stretch where theory has something to say of it; None elsewhere."""
+    if "temperature" not in bodies.closed_forms:
+        return None
+    h = bodies.history
+    fig, axes = figure(860, 360)
+    stretch, name = _stretch(h)
+    _draw_strokes(axes, bodies, stretch, h["temperature"], bodies.closed_forms["temperature"])
+    axes.set(xlabel=name, ylabel="mean temperature, K")
+    return svg(fig, "mean temperature against the stretch of the box")
+
+
+def vibration_picture(bodies):
+    """Kinetic energy of a standing wave over its last periods; None of what does not vibrate."""
+    if "kinetic" not in bodies.closed_forms:
+        return None
+    h = bodies.history
+    last = h["time"] >= h["time"][-1] - 4 / bodies.results["closed_form_frequency"]
+    fig, axes = figure(860, 360)
+    _draw_closed_form(axes, h["time"][last] * 1e3, bodies.closed_forms["kinetic"][last])
+    axes.plot(h["time"][last] * 1e3, h["kinetic"][last], color=ACCENT, linewidth=1.6, label="simulated")
     light_grid(axes)
-    axes.set(xlabel="length / first length", ylabel="force of the piston, N/mm")
-    axes.legend(frameon=False)
-    return svg(fig, "force of the piston against the stretch of the box")
+    axes.set(xlabel="time, ms", ylabel="kinetic energy, N mm/mm")
+    axes.legend(frameon=False, ncols=2, loc="lower right", bbox_to_anchor=(1, 1))
+    return svg(fig, "kinetic energy against time")
 
 
 def heat_picture(bodies):
@@ -61,12 +127,8 @@ def heat_picture(bodies):
     if not np.any(h["temperature"]):
         return None
     fig, axes = figure(860, 360)
-    for stroke, part in _strokes(h):
-        axes.plot(h["entropy"][part] * 1e3, h["temperature"][part],
-                  color=STROKE_COLOURS[(stroke - 1) % 4], linewidth=1.8, label=f"stroke {stroke}")
-    light_grid(axes)
+    _draw_strokes(axes, bodies, h["entropy"] * 1e3, h["temperature"])
     axes.set(xlabel="entropy of the bodies, µJ/(mm K)", ylabel="mean temperature, K")
-    axes.legend(frameon=False)
     return svg(fig, "mean temperature against entropy")
 
 
@@ -128,9 +190,11 @@ def energy_picture(bodies):
     if "rigid_work" in h:
         h["pushed"] = h["rigid_work"] + h["gravity_work"]
         lines = [("pushed", "work of rigid bodies and gravity", WARM), ("friction_heat", "heat of friction", ACCENT)]
-    for key, label, colour in lines + [("internal", "internal energy", INK), ("residue", "residue", QUIET)]:
-        axes.plot(h["time"] * 1e3, h[key], color=colour, linewidth=1.6, label=label)
+    lines += [("internal", "internal energy", INK), ("kinetic", "kinetic energy", SAND), ("residue", "residue", QUIET)]
+    for key, label, colour in lines:
+        if np.any(h[key]):
+            axes.plot(h["time"] * 1e3, h[key], color=colour, linewidth=1.6, label=label)
     light_grid(axes)
     axes.set(xlabel="time, ms", ylabel="energy per width, N mm/mm")
-    axes.legend(frameon=False)
+    axes.legend(frameon=False, ncols=5, loc="lower right", bbox_to_anchor=(1, 1), fontsize=10)
     return svg(fig, "energies against time")

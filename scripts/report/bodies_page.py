@@ -24,12 +24,22 @@ def page_of_bodies(bodies):
     section.warnings([prose(reason) for reason in bodies.refusals])
     section.facts([("verdict", chip("accepted") if bodies.accepted else chip("not accepted", "no"), "")] +
                   [(name.replace("_", " "), _with_unit(name, value), "") for name, value in bodies.results.items()])
-    velocity = drawing.velocity_picture(bodies)
+    velocity, vibration = drawing.velocity_picture(bodies), drawing.vibration_picture(bodies)
     if velocity:
         page.section("Speed").figure(velocity, "Of the centre of mass of the bodies that deform.")
+    elif vibration:
+        page.section("Vibration").figure(vibration, "The last four periods; twice in each all of the "
+                                               "energy is kinetic.")
     else:
         page.section("Force on the way").figure(drawing.force_picture(bodies), "Force of the piston on the bodies per "
                                                 "width, pulling positive, means between readings.")
+    pressure = drawing.pressure_picture(bodies)
+    if pressure:
+        page.section("Pressure and volume").figure(pressure, "Isothermal strokes keep p V, adiabatic ones p V^γ, "
+                                                   "from where they begin.")
+    temperature = drawing.temperature_picture(bodies)
+    if temperature:
+        page.section("Temperature on the way").figure(temperature, "Means over the bodies.")
     pressed = drawing.pressed_picture(bodies)
     if pressed:
         page.section("Where bodies touch").figure(pressed, "Normal forces of the nodes, summed across the box, means over "
@@ -39,7 +49,7 @@ def page_of_bodies(bodies):
         page.section("Temperature and entropy").figure(heat, "Means over the bodies. Heat at constant temperature runs "
                                                        "level, deformation without heat runs upright.")
     page.section("Where the energy went").figure(drawing.energy_picture(bodies), "Work and heat that came in, and what "
-                                                 "became of them; kinetic energy and damping are part of the ledger.")
+                                                 "became of them; damping is part of the ledger too.")
     page.section("Cost").facts([("wall time", f"{number(bodies.cost['wall_s'])} s", ""),
                                 ("time steps", integer(bodies.cost["steps"]), ""),
                                 ("particles", integer(bodies.cost["particles"]), "")])
