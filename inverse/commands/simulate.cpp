@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -64,10 +65,15 @@ void require_writable(const fs::path& file, const char* extension = ".h5") {
   fs::path parent = fs::absolute(file).parent_path();
   while (!fs::exists(parent)) parent = parent.parent_path();
   if (!fs::is_directory(parent)) refuse(parent.string() + " is not a directory");
-  if (::access(parent.c_str(), W_OK | X_OK) != 0) {
+  // By trying: permissions alone do not say that a file system takes no files.
+  std::string trial = (parent / ".kerf.XXXXXX").string();
+  const int descriptor = ::mkstemp(trial.data());
+  if (descriptor < 0) {
     const std::string why = std::generic_category().message(errno);
     refuse("cannot write in " + parent.string() + ": " + why);
   }
+  ::close(descriptor);
+  ::unlink(trial.c_str());
 }
 
 std::string joined(const std::vector<std::string>& reasons) {
