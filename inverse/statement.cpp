@@ -11,17 +11,24 @@
 namespace kerf::inverse {
 namespace {
 
-std::string number(double value) {
+/// To the second digit of its error, so that no digit means nothing, but to one of its own at least; without an error
+/// to three.
+std::string number(double value, double error = 0.0) {
   if (!std::isfinite(value)) return "unknown";
-  const double magnitude = std::abs(value);
-  if (magnitude >= 1e6 || (magnitude > 0 && magnitude < 1e-3)) return fmt::format("{:.2e}", value);
-  const int decimals = magnitude == 0 ? 0 : std::max(0, 2 - static_cast<int>(std::floor(std::log10(magnitude))));
-  return fmt::format("{:.{}f}", value, decimals);
+  const auto exponent = [](double x) { return static_cast<int>(std::floor(std::log10(std::abs(x)))); };
+  const bool known = error > 0.0 && std::isfinite(error);
+  const int own = value == 0.0 ? 0 : exponent(value);
+  const int last = known ? std::min(exponent(error) - 1, own) : std::min(0, own - 2);
+  const double one = std::pow(10.0, last), rounded = last > 0 ? std::round(value / one) * one : value;
+  const double magnitude = std::abs(rounded);
+  if (magnitude >= 1e6 || (magnitude > 0 && magnitude < 1e-3))
+    return fmt::format("{:.{}e}", rounded, known ? std::clamp(exponent(rounded) - last, 0, 9) : 2);
+  return fmt::format("{:.{}f}", rounded, std::max(0, -last));
 }
 
-std::string between(const Interval& interval, const std::string& unit) {
+std::string between(const Interval& interval, const std::string& unit, double error) {
   const double one = consistent_units_in(unit);
-  return fmt::format("{} to {}{}", number(interval.lower / one), number(interval.upper / one),
+  return fmt::format("{} to {}{}", number(interval.lower / one, error / one), number(interval.upper / one, error / one),
                      unit == "1" ? "" : " " + unit);
 }
 
@@ -34,14 +41,15 @@ std::string plain(const std::string& name) {
 std::string about(const ParameterEstimate& p, const Interval& all) {
   const std::string name = plain(p.name);
   const double one = consistent_units_in(p.unit);
-  const auto shown = [&](double value) { return show(value, p.unit); };
+  const double error = p.standard_error;
+  const auto shown = [&](double value) { return show(value, p.unit, error); };
   switch (p.verdict) {
     case Verdict::measured:
       return fmt::format("{} is measured: {} with a standard error of {} (95 % interval {}).", name, shown(p.value),
-                         shown(p.standard_error), between(all, p.unit));
+                         shown(error), between(all, p.unit, error));
     case Verdict::bounded:
       return fmt::format("{} is only bounded: {} fits best, but anything from {} agrees with the data.", name,
-                         shown(p.value), between(all, p.unit));
+                         shown(p.value), between(all, p.unit, error));
     case Verdict::bounded_above:
       return fmt::format(
           "{} is only bounded above: at most {} (best fit {}; the lower end of the search, {}, is not excluded).", name,
@@ -54,7 +62,7 @@ std::string about(const ParameterEstimate& p, const Interval& all) {
       break;
   }
   return fmt::format("{} is not measurable with these cuts: the whole range searched, {}, agrees with the data.", name,
-                     between(p.bounds, p.unit));
+                     between(p.bounds, p.unit, 0.0));
 }
 
 /// "trades off against sigma: only G sigma^0.7 is known (to 3 %)".
@@ -98,7 +106,8 @@ std::string about_the_edge(const Calibration& calibration) {
   const auto describe = [](const Fit& fit) {
     std::string values;
     for (const ParameterEstimate& p : fit.identifiability.parameters)
-      values += fmt::format("{}{} {}", values.empty() ? "" : ", ", plain(p.name), show(p.value, p.unit));
+      values +=
+          fmt::format("{}{} {}", values.empty() ? "" : ", ", plain(p.name), show(p.value, p.unit, p.standard_error));
     return fmt::format("{}: {} (chi2 {})", fit.assumption, values, number(fit.residuals.chi2));
   };
   for (const Fit& other : calibration.alternatives) {
@@ -127,7 +136,7 @@ std::string about_the_numerics(const Calibration& calibration) {
         const double by = *shift++;
         if (!(std::abs(by) > 0.5 * p.standard_error)) continue;
         moved += fmt::format("{}{} by {} ({:.1f} standard errors)", moved.empty() ? "" : ", ", plain(p.name),
-                             show(by, p.unit), std::abs(by) / p.standard_error);
+                             show(by, p.unit, p.standard_error), std::abs(by) / p.standard_error);
       }
     text += moved.empty() ? fmt::format(" Under the other numerics \"{}\" no estimate moves by half a standard error.",
                                         check.name)
@@ -170,8 +179,9 @@ std::string about_the_failed(const Job& job, const Fit& fit) {
 
 }  // namespace
 
-std::string show(double value, const std::string& unit) {
-  return number(value / consistent_units_in(unit)) + (unit == "1" ? "" : " " + unit);
+std::string show(double value, const std::string& unit, double error) {
+  const double one = consistent_units_in(unit);
+  return number(value / one, error / one) + (unit == "1" ? "" : " " + unit);
 }
 
 std::string state(const Job& job, const Calibration& calibration) {

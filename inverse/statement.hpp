@@ -10,7 +10,8 @@ namespace kerf::inverse {
 /// much of the answer hangs on the assumption about the edge, whether the model fits, what failed, and why it stopped.
 std::string state(const Job& job, const Calibration& calibration);
 
-/// A value in a unit with three significant digits: "1050 MPa".
-std::string show(double value, const std::string& unit);
+/// A value in a unit: to the second digit of its error ("1096 MPa" of an error of 78 MPa), without one to three
+/// significant digits or to units.
+std::string show(double value, const std::string& unit, double error = 0.0);
 
 }  // namespace kerf::inverse

@@ -136,11 +136,11 @@ void print_table(const inverse::Calibration& calibration, const inverse::Calibra
   if (!known.parameters.empty())
     fmt::print("{:<16}{:>14}{:>14}{:>28}   {}\n", "parameter", "value", "std. error", "95 % interval", "verdict");
   for (const std::vector<inverse::ParameterEstimate>* all : {&known.parameters, &known.derived})
-    for (const inverse::ParameterEstimate& p : *all)
-      fmt::print("{:<16}{:>14}{:>14}{:>28}   {}\n", p.name, inverse::show(p.value, p.unit),
-                 inverse::show(p.standard_error, p.unit),
-                 inverse::show(p.interval.lower, p.unit) + " ... " + inverse::show(p.interval.upper, p.unit),
-                 inverse::name(p.verdict));
+    for (const inverse::ParameterEstimate& p : *all) {
+      const auto shown = [&](double value) { return inverse::show(value, p.unit, p.standard_error); };
+      fmt::print("{:<16}{:>14}{:>14}{:>28}   {}\n", p.name, shown(p.value), shown(p.standard_error),
+                 shown(p.interval.lower) + " ... " + shown(p.interval.upper), inverse::name(p.verdict));
+    }
   if (known.singular_values.size() > 0) fmt::print("\nsingular values:");
   for (const double value : known.singular_values) fmt::print(" {:.3g}", value);
   fmt::print("{}{}\n\n{} simulated cuts ({} failed), {:.0f} s\n", known.parameters.empty() ? "" : "\n\n",

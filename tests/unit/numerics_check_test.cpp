@@ -57,7 +57,7 @@ TEST(NumericsCheck, ShiftsTheEstimatesAsANewCalibrationWould) {
   EXPECT_NEAR(mesh.shifts[3], 0, 2e-4);
   EXPECT_LT(mesh.chi2, 0.01);
   EXPECT_THAT(calibration.statement, ::testing::ContainsRegex("other numerics \"mesh\" estimates move: yield stress by "
-                                                              "-5.4. MPa .*no interval holds this"));
+                                                              "-5.4 MPa .*no interval holds this"));
 }
 
 TEST(NumericsCheck, LeavesTheEstimatesThemselvesAlone) {
