@@ -25,9 +25,16 @@ Eigen::RowVectorXd model_scale(const Eigen::RowVectorXd& simulated) {
   return scaled;
 }
 
-/// What a change of d ln(observable) is in the observable's own terms.
+/// What one on the model's scale is in the observable's own terms: d ln(observable) where it is positive.
 double unit(const Evaluation& base, Eigen::Index cut, Eigen::Index observable) {
-  return LocalModel::is_logarithmic(observable) ? 1 : typical_size(base.simulated, cut, observable);
+  if (LocalModel::is_logarithmic(observable)) return 1;
+  return observable == F_t ? base.simulated(cut, F_c) : 1;
+}
+
+/// What a relative roughness is a share of, on the model's scale.
+double model_size(const Evaluation& base, Eigen::Index cut, Eigen::Index observable) {
+  if (LocalModel::is_logarithmic(observable)) return 1;
+  return typical_size(base.simulated, cut, observable) / unit(base, cut, observable);
 }
 
 }  // namespace
@@ -39,12 +46,13 @@ LocalModel::LocalModel(Evaluation base, const OptimiserChoice& choice)
       has_slopes_(base_.usable.size(), false),
       at_jump_(base_.usable.size(), false) {
   const Eigen::Index n = base_.point.size();
-  errors_ = Eigen::MatrixXd::Zero(base_.simulated.rows(), n);
-  surprises_ = Eigen::MatrixXd::Ones(base_.simulated.rows(), base_.simulated.cols());
-  slopes_.fill(errors_);
-  silent_.fill(SlopeMask::Constant(errors_.rows(), n, false));
-  rough_covariances_.assign(base_.usable.size(), Eigen::MatrixXd::Zero(n, n));
-  curvatures_.fill(rough_covariances_);
+  told_ = Eigen::MatrixXd::Zero(base_.simulated.rows(), n);
+  fresh_errors_ = Eigen::MatrixXd::Zero(base_.simulated.rows(), base_.simulated.cols());
+  slopes_.fill(told_);
+  errors_.fill(told_);
+  silent_.fill(SlopeMask::Constant(told_.rows(), n, false));
+  curvatures_.fill(std::vector<Eigen::MatrixXd>(base_.usable.size(), Eigen::MatrixXd::Zero(n, n)));
+  rough_covariances_ = curvatures_;
   learn(base_);
 }
 
@@ -68,7 +76,6 @@ void LocalModel::add(std::size_t cut, const Eigen::VectorXd& point, const RunRec
 void LocalModel::refit() {
   for (std::size_t cut = 0; cut < runs_.size(); ++cut) {
     if (!base_.usable[cut]) continue;
-    const auto row = static_cast<Eigen::Index>(cut);
     std::vector<const Run*> used;
     at_jump_[cut] = false;
     for (const Run& run : runs_[cut])
@@ -76,27 +83,51 @@ void LocalModel::refit() {
         at_jump_[cut] = at_jump_[cut] || (run.point - base_.point).lpNorm<Eigen::Infinity>() <= 1.001 * choice_.step;
       else if (run.point != base_.point)
         used.push_back(&run);
-    const auto count = static_cast<Eigen::Index>(used.size());
-    Eigen::MatrixXd steps(count, base_.point.size());
-    Eigen::MatrixXd changes(count, base_.simulated.cols());
+    const auto row = static_cast<Eigen::Index>(cut);
+    // What lies beyond the reach of a parabola is heard only where the runs within tell nothing.
+    const auto far = std::stable_partition(used.begin(), used.end(),
+                                           [&](const Run* run) { return (run->point - base_.point).norm() <= reach; });
+    const Eigen::MatrixXd near = steps_of({used.begin(), far});
+    const Eigen::MatrixXd steps = slope_errors(near).maxCoeff() <= unknown_error() ? near : steps_of(used);
+    told_.row(row) = slope_errors(steps).transpose();
+    has_slopes_[cut] = told_.row(row).maxCoeff() <= unknown_error();
+    Eigen::MatrixXd changes(steps.rows(), base_.simulated.cols());
     const Eigen::RowVectorXd here = model_scale(base_.simulated.row(row));
-    for (Eigen::Index i = 0; i < count; ++i) {
-      const Run& run = *used[static_cast<std::size_t>(i)];
-      steps.row(i) = (run.point - base_.point).transpose();
-      changes.row(i) = run.scaled - here;
-    }
-    const QuadraticResponse response(steps, choice_.roughness);
+    for (Eigen::Index i = 0; i < changes.rows(); ++i) changes.row(i) = used[static_cast<std::size_t>(i)]->scaled - here;
     for (Eigen::Index k = 0; k < changes.cols(); ++k) {
       if (!changes.col(k).allFinite()) continue;  // it was not simulated
-      surprises_(row, k) = response.surprise(changes.col(k));
-      slopes_[static_cast<std::size_t>(k)].row(row) = response.slopes(changes.col(k)).transpose();
-      curvatures_[static_cast<std::size_t>(k)][cut] = response.curvatures(changes.col(k));
+      const Texture texture = likeliest_texture(steps, changes.col(k), said_texture(cut, k));
+      const QuadraticResponse response(steps, texture);
+      const auto observable = static_cast<std::size_t>(k);
+      slopes_[observable].row(row) = response.slopes(changes.col(k)).transpose();
+      curvatures_[observable][cut] = response.curvatures(changes.col(k));
+      errors_[observable].row(row) = response.slope_errors().transpose();
+      rough_covariances_[observable][cut] = response.rough_covariance();
+      fresh_errors_(row, k) = fresh_error(texture);
     }
     silence(cut, steps, changes);
-    errors_.row(row) = response.slope_errors().transpose();
-    rough_covariances_[cut] = response.rough_covariance();
-    has_slopes_[cut] = response.slope_errors().maxCoeff() <= unknown_error();
   }
+}
+
+Eigen::MatrixXd LocalModel::steps_of(const std::vector<const Run*>& runs) const {
+  Eigen::MatrixXd steps(static_cast<Eigen::Index>(runs.size()), base_.point.size());
+  for (Eigen::Index i = 0; i < steps.rows(); ++i)
+    steps.row(i) = (runs[static_cast<std::size_t>(i)]->point - base_.point).transpose();
+  return steps;
+}
+
+Eigen::VectorXd LocalModel::slope_errors(const Eigen::MatrixXd& steps) const {
+  return QuadraticResponse(steps, {.roughness = choice_.roughness}).slope_errors();
+}
+
+Texture LocalModel::said_texture(std::size_t cut, Eigen::Index observable) const {
+  const auto row = static_cast<Eigen::Index>(cut);
+  // A mean force is known to the standard error of its window. Neighbours swing alike and share it; F_t/F_c has none,
+  // since both swing together.
+  const double own = simulation_errors(base_.runs[cut])[static_cast<std::size_t>(observable)];
+  const double size = is_logarithmic(observable) ? base_.simulated(row, observable) : 1;
+  return {.roughness = choice_.roughness * model_size(base_, row, observable),
+          .ripple = observable == F_t || !std::isfinite(own) ? 0 : own / size};
 }
 
 void LocalModel::silence(std::size_t cut, const Eigen::MatrixXd& steps, const Eigen::MatrixXd& changes) {
@@ -116,11 +147,11 @@ void LocalModel::silence(std::size_t cut, const Eigen::MatrixXd& steps, const Ei
   }
 }
 
-double LocalModel::fresh_error() const {
-  const double step = choice_.step, rough = choice_.roughness / step;
-  if (choice_.central)
-    return std::hypot(rough / std::numbers::sqrt2, QuadraticResponse::usual_third_order * step * step / 6);
-  return std::hypot(rough * std::numbers::sqrt2, QuadraticResponse::usual_curvature * step / 2);
+double LocalModel::fresh_error(const Texture& texture) const {
+  Eigen::MatrixXd steps(choice_.central ? 2 : 1, 1);
+  steps(0, 0) = choice_.step;
+  if (choice_.central) steps(1, 0) = -choice_.step;
+  return QuadraticResponse(steps, texture).slope_errors()[0];
 }
 
 LocalModel::SlopeMask LocalModel::unsure(const Objective& objective) const {
@@ -134,26 +165,23 @@ LocalModel::SlopeMask LocalModel::unsure(const Objective& objective) const {
   if (information.rows() > n) information(n, n) += 1e-12 * (1 + information(n, n));
   const Eigen::VectorXd variances = information.inverse().diagonal();
 
-  const double fresh = fresh_error(), unknown = unknown_error();
-  SlopeMask result(errors_.rows(), n);
-  for (Eigen::Index i = 0; i < errors_.rows(); ++i)
+  SlopeMask result(told_.rows(), n);
+  for (Eigen::Index i = 0; i < told_.rows(); ++i)
     for (Eigen::Index j = 0; j < n; ++j) {
-      double feigned = 0, surprise = 1;
+      double feigned = 0;
+      bool improvable = false;
       for (Eigen::Index k = 0; k < base_.simulated.cols(); ++k) {
+        const auto observable = static_cast<std::size_t>(k);
         const double weight = misfit.weights()(i, k);
-        if (weight == 0 || silent_[static_cast<std::size_t>(k)](i, j)) continue;
-        const double rough = std::sqrt(rough_covariances_[static_cast<std::size_t>(i)](j, j));
-        const double bent = std::sqrt(std::max(0.0, errors_(i, j) * errors_(i, j) - rough * rough));
-        surprise = std::max(surprise, surprises_(i, k));
-        const double value = typical_size(base_.simulated, i, k);
-        feigned += std::pow(
-            surprises_(i, k) * weight * std::hypot(value * rough, (k == F_t ? base_.simulated(i, F_c) : value) * bent),
-            2);
+        if (weight == 0 || silent_[observable](i, j)) continue;
+        const double error = errors_[observable](i, j);
+        const double value = is_logarithmic(k) ? base_.simulated(i, k) : unit(base_, i, k);
+        feigned += std::pow(weight * value * error, 2);
+        improvable |= error > worse_than_fresh * fresh_errors_(i, k);
       }
       const auto cut = static_cast<std::size_t>(i);
       const bool matters = feigned * variances[j] * static_cast<double>(count(base_.usable)) > harmless;
-      result(i, j) = base_.usable[cut] &&
-                     (errors_(i, j) > unknown || (matters && surprise * errors_(i, j) > worse_than_fresh * fresh));
+      result(i, j) = base_.usable[cut] && (told_(i, j) > unknown_error() || (matters && improvable));
     }
   return result;
 }
@@ -174,7 +202,7 @@ void LocalModel::difference(Objective& objective) {
 }
 
 void LocalModel::difference_unknown(Objective& objective) {
-  SlopeMask unknown = errors_.array() > unknown_error();
+  SlopeMask unknown = told_.array() > unknown_error();
   for (std::size_t cut = 0; cut < base_.usable.size(); ++cut)
     if (!base_.usable[cut]) unknown.row(static_cast<Eigen::Index>(cut)).setConstant(false);
   improve(objective, unknown);
@@ -264,7 +292,7 @@ void LocalModel::borrow_for(const Evaluation& other) {
     if (!same) {
       runs.clear();
       has_slopes_[cut] = false;
-      errors_.row(row).setConstant(QuadraticResponse::any_slope);
+      told_.row(row).setConstant(QuadraticResponse::any_slope);
     } else {
       const Eigen::RowVectorXd shift = model_scale(other.simulated.row(row)) - model_scale(predicted.row(row));
       for (Run& run : runs) {
@@ -293,9 +321,10 @@ void LocalModel::move_to(const Evaluation& other) {
 }
 
 Eigen::MatrixXd LocalModel::slope_covariance(Eigen::Index cut, Eigen::Index observable) const {
+  const auto k = static_cast<std::size_t>(observable);
   const double one = unit(base_, cut, observable);
-  const auto heard = (!silent_[static_cast<std::size_t>(observable)].row(cut).array()).cast<double>().matrix();
-  return one * one * heard.asDiagonal() * rough_covariances_[static_cast<std::size_t>(cut)] * heard.asDiagonal();
+  const auto heard = (!silent_[k].row(cut).array()).cast<double>().matrix();
+  return one * one * heard.asDiagonal() * rough_covariances_[k][static_cast<std::size_t>(cut)] * heard.asDiagonal();
 }
 
 bool LocalModel::branches_differ(const Evaluation& a, const Evaluation& b) {

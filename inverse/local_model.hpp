@@ -5,8 +5,10 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <vector>
 
 #include "inverse/objective.hpp"
+#include "inverse/quadratic_response.hpp"
 
 namespace kerf::inverse {
 
@@ -105,13 +107,18 @@ class LocalModel {
 
   void add(std::size_t cut, const Eigen::VectorXd& point, const RunRecord& run, const Eigen::RowVectorXd& simulated);
   void refit();
+  Eigen::MatrixXd steps_of(const std::vector<const Run*>& runs) const;
+  /// If all were as rough as the audit says and as bent as usual.
+  Eigen::VectorXd slope_errors(const Eigen::MatrixXd& steps) const;
+  /// Of an observable on the model's scale: what the noise audit and the cut's own error say.
+  Texture said_texture(std::size_t cut, Eigen::Index observable) const;
   /// A parameter alone that changes an observable by not one bit does not act on it: no fit through other runs may say
   /// so. One step and one change of every run per row.
   void silence(std::size_t cut, const Eigen::MatrixXd& steps, const Eigen::MatrixXd& changes);
-  /// Error of the slope that a difference gives.
-  double fresh_error() const;
+  /// Error of the slope that a difference gives of a quantity with this texture.
+  double fresh_error(const Texture& texture) const;
   /// From which error on a slope counts as not known at all.
-  double unknown_error() const { return std::max(1.0, 2 * fresh_error()); }
+  double unknown_error() const { return std::max(1.0, 2 * fresh_error({.roughness = choice_.roughness})); }
   /// Of the slopes, those that a difference should improve: cuts x parameters.
   SlopeMask unsure(const Objective& objective) const;
   /// Simulates differences for the slopes chosen.
@@ -122,10 +129,11 @@ class LocalModel {
   std::vector<std::vector<Run>> runs_;                                     ///< of every cut
   std::array<Eigen::MatrixXd, observable_count> slopes_;                   ///< cuts x parameters
   std::array<std::vector<Eigen::MatrixXd>, observable_count> curvatures_;  ///< of every cut: parameters x parameters
-  std::array<SlopeMask, observable_count> silent_;  ///< slopes that are zero to the last bit: cuts x parameters
-  Eigen::MatrixXd errors_;                          ///< of the slopes, all that is not known: cuts x parameters
-  Eigen::MatrixXd surprises_;                       ///< factors on these errors: cuts x observables
-  std::vector<Eigen::MatrixXd> rough_covariances_;  ///< of the slopes of every cut, from roughness
+  std::array<SlopeMask, observable_count> silent_;        ///< slopes that are zero to the last bit: cuts x parameters
+  std::array<Eigen::MatrixXd, observable_count> errors_;  ///< of the slopes, all that is not known: cuts x parameters
+  std::array<std::vector<Eigen::MatrixXd>, observable_count> rough_covariances_;  ///< of the slopes of every cut
+  Eigen::MatrixXd fresh_errors_;  ///< of a difference: cuts x observables
+  Eigen::MatrixXd told_;          ///< errors if all were as rough and bent as usual: whether runs tell a slope at all
   CutMask has_slopes_, at_jump_;
   bool fresh_ = false;  ///< every difference that matters was taken at the present base
 };

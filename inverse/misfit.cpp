@@ -21,11 +21,6 @@ constexpr Eigen::Index G_R = static_cast<Eigen::Index>(Observable::resistance);
 constexpr std::array<const char*, observable_count> error_columns{"Fc_sd", "Ft_sd", "chip_ratio_sd", "curl_radius_sd",
                                                                   "G_sd"};
 
-std::array<double, observable_count> simulation_errors(const RunRecord& run) {
-  return {run.F_c.standard_error, run.F_t.standard_error, run.chip_ratio.standard_error,
-          run.chip_curvature.standard_error, 0.0};
-}
-
 Eigen::Index rows(const std::vector<MeasuredCut>& cuts) {
   return static_cast<Eigen::Index>(cuts.size());
 }
@@ -51,6 +46,11 @@ Eigen::RowVectorXd Misfit::observations(std::size_t cut, const RunRecord& run) c
   const std::optional<double>& extension = extensions_[cut];
   row[G_R] = extension ? resistance(run, *extension) : std::numeric_limits<double>::quiet_NaN();
   return row;
+}
+
+std::array<double, observable_count> simulation_errors(const RunRecord& run) {
+  return {run.F_c.standard_error, run.F_t.standard_error, run.chip_ratio.standard_error,
+          run.chip_curvature.standard_error, 0.0};
 }
 
 double typical_size(const Observations& simulated, Eigen::Index cut, Eigen::Index observable) {

@@ -35,6 +35,9 @@ struct Evaluation {
   Observations simulated;
 };
 
+/// Standard errors of the observables that a run itself states.
+std::array<double, observable_count> simulation_errors(const RunRecord& run);
+
 /// What a relative roughness of an observable is a share of: its value, or F_c/10 where F_t is smaller.
 double typical_size(const Observations& simulated, Eigen::Index cut, Eigen::Index observable);
 

@@ -10,6 +10,7 @@ namespace kerf {
 namespace {
 
 using inverse::QuadraticResponse;
+using inverse::Texture;
 
 const Eigen::Vector3d slopes(0.8, -0.2, 0.3);
 
@@ -37,14 +38,14 @@ Eigen::VectorXd changes(const Eigen::MatrixXd& steps) {
 
 TEST(QuadraticResponse, FindsAQuadraticOnceItHasAsManyRunsAsTerms) {
   const Eigen::MatrixXd steps = scattered(14, 0.1, 1);
-  const QuadraticResponse response(steps, 0);
+  const QuadraticResponse response(steps, {.roughness = 0});
   EXPECT_LT((response.slopes(changes(steps)) - slopes).norm(), 1e-3);
   EXPECT_LT((response.curvatures(changes(steps)) - curvatures()).norm(), 0.03);
 }
 
 TEST(QuadraticResponse, KnowsByHowMuchCurvatureSpoilsAOneSidedDifference) {
   const Eigen::MatrixXd steps = 0.1 * Eigen::Matrix3d::Identity();
-  const QuadraticResponse response(steps, 0);
+  const QuadraticResponse response(steps, {.roughness = 0});
   const Eigen::Vector3d bias = 0.5 * 0.1 * curvatures().diagonal();
   EXPECT_LT((response.slopes(changes(steps)) - slopes - bias).norm(), 1e-3);
   for (Eigen::Index j = 0; j < 3; ++j)
@@ -55,7 +56,7 @@ TEST(QuadraticResponse, KnowsByHowMuchCurvatureSpoilsAOneSidedDifference) {
 TEST(QuadraticResponse, ErrorsAreThoseOfRepeatedExperiments) {
   constexpr double roughness = 0.004;
   const Eigen::MatrixXd steps = scattered(20, 0.3, 2);
-  const QuadraticResponse response(steps, roughness);
+  const QuadraticResponse response(steps, {.roughness = roughness});
   std::mt19937_64 random(3);
   std::normal_distribution<double> normal;
   Eigen::Vector3d all = Eigen::Vector3d::Zero();
@@ -86,17 +87,71 @@ TEST(QuadraticResponse, ErrorsAreThoseOfRepeatedExperiments) {
   for (Eigen::Index j = 0; j < 3; ++j) EXPECT_NEAR(std::sqrt(all[j]) / response.slope_errors()[j], 1, 0.05);
 }
 
-TEST(QuadraticResponse, IsSurprisedByMoreCurvatureThanUsual) {
-  const Eigen::MatrixXd steps = scattered(14, 0.3, 4);
-  const QuadraticResponse response(steps, 0);
-  EXPECT_LT(response.surprise(changes(steps)), 1.2);
-  EXPECT_NEAR(response.surprise(10 * changes(steps)) / response.surprise(20 * changes(steps)), 0.5, 1e-9);
-  EXPECT_GT(response.surprise(10 * changes(steps)), 3);
-  EXPECT_EQ(QuadraticResponse(steps.topRows(3), 0).surprise(10 * changes(steps.topRows(3))), 1);
+/// Rough values, that of the base in common.
+Eigen::VectorXd roughened(Eigen::VectorXd changes, double roughness, std::mt19937_64& random) {
+  std::normal_distribution<double> normal(0, roughness);
+  const double base = normal(random);
+  for (double& change : changes) change += normal(random) - base;
+  return changes;
+}
+
+TEST(Texture, StaysAsSaidWhereValuesAreSo) {
+  std::mt19937_64 random(7);
+  int left = 0;
+  for (unsigned seed = 0; seed < 100; ++seed) {
+    const Eigen::MatrixXd steps = scattered(12, 0.3, seed);
+    const Texture found =
+        inverse::likeliest_texture(steps, roughened(changes(steps), 0.001, random), {.roughness = 0.001});
+    left += found.roughness > 0.002 || found.bend > 1 ? 1 : 0;
+  }
+  EXPECT_LE(left, 5);
+}
+
+TEST(Texture, FindsWhatBendsMoreThanUsual) {
+  const Eigen::MatrixXd steps = scattered(20, 0.3, 4);
+  const Eigen::VectorXd straight = steps * slopes, bent = straight + 20 * (changes(steps) - straight);
+  const Texture found = inverse::likeliest_texture(steps, bent, {.roughness = 0.001});
+  EXPECT_LE(found.roughness, 0.004);
+  EXPECT_GE(found.bend, 4);
+  EXPECT_LT((QuadraticResponse(steps, found).slopes(bent) - slopes).norm(), 0.02);
+}
+
+TEST(Texture, FindsRoughnessThatNobodySaid) {
+  // The mean of many draws: twenty runs know their roughness to a fifth.
+  const Eigen::MatrixXd steps = scattered(20, 0.3, 4);
+  std::mt19937_64 random(5);
+  double logarithm = 0, error = 0, claimed = 0;
+  constexpr int draws = 200;
+  for (int i = 0; i < draws; ++i) {
+    const Eigen::VectorXd rough = roughened(changes(steps), 0.02, random);
+    const Texture found = inverse::likeliest_texture(steps, rough, {.roughness = 0.001});
+    const QuadraticResponse response(steps, found);
+    logarithm += std::log(found.roughness / 0.02) / draws;
+    error += (response.slopes(rough) - slopes).squaredNorm() / draws;
+    claimed += response.slope_errors().squaredNorm() / draws;
+  }
+  EXPECT_NEAR(logarithm, 0, 0.35) << "it goes by doublings, and is held a little at what was said";
+  EXPECT_NEAR(std::sqrt(error / claimed), 1, 0.2);
+}
+
+TEST(Texture, NeighboursShareARippleAndFarValuesDoNot) {
+  const auto error_of_difference = [](double step) {
+    const Eigen::MatrixXd one = Eigen::MatrixXd::Constant(1, 1, step);
+    return std::sqrt(QuadraticResponse(one, {.ripple = 0.01}).rough_covariance()(0, 0));
+  };
+  EXPECT_NEAR(error_of_difference(0.01), 0.01 / QuadraticResponse::ripple_length, 1e-3);
+  EXPECT_NEAR(error_of_difference(2), 0.01 * std::sqrt(2.0) / 2, 1e-4);
+}
+
+TEST(Texture, AsFewRunsAsSlopesTellNothingOfTheRest) {
+  const Eigen::MatrixXd steps = scattered(3, 0.3, 6);
+  const Texture found = inverse::likeliest_texture(steps, 10 * changes(steps), {.roughness = 0.001});
+  EXPECT_EQ(found.roughness, 0.001);
+  EXPECT_EQ(found.bend, 1);
 }
 
 TEST(QuadraticResponse, ClaimsNothingWithoutRuns) {
-  const QuadraticResponse response(Eigen::MatrixXd(0, 3), 0.001);
+  const QuadraticResponse response(Eigen::MatrixXd(0, 3), {.roughness = 0.001});
   EXPECT_EQ(response.slopes(Eigen::VectorXd(0)), Eigen::VectorXd::Zero(3));
   EXPECT_EQ(response.slope_errors(), Eigen::VectorXd::Constant(3, QuadraticResponse::any_slope));
 }
