@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Checks the format of every source and runs clang-tidy over the library and the program; skips a tool that is missing.
+# Checks the format of every source, looks over the Python scripts and runs clang-tidy over the library and the
+# program; skips a tool that is missing.
 # Usage: scripts/lint.sh [--format | --thorough]
-#   --format    the format alone, which takes a second; clang-tidy takes minutes
+#   --format    the format and the Python scripts alone, which takes a second; clang-tidy takes minutes
 #   --thorough  also the tests, and clang's slow static analyzer
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -16,6 +17,11 @@ fi
 if command -v clang-format >/dev/null; then
   echo "== clang-format"
   git ls-files -z '*.cpp' '*.hpp' | xargs -0 clang-format --dry-run --Werror
+fi
+
+if command -v pyflakes3 >/dev/null; then
+  echo "== pyflakes"
+  git ls-files -z '*.py' | xargs -0 pyflakes3
 fi
 
 if [[ "${1:-}" != --format ]] && command -v clang-tidy >/dev/null; then

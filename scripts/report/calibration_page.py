@@ -5,18 +5,14 @@ import re
 
 from markupsafe import Markup
 
-from . import fit_figures, uncertainty_figures
+from . import fit_figures
 from .calibration import (compared_observables, curve_groups, label_of, measured_points, method_curves, planed, pulled,
                           search_steps, sign_runs, simulated_curve, spending, toughness_rows, with_labels)
 from .calibration_methods import methods_paragraph
 from .cut_page import add_chip, add_force_history, add_ledger, facts_of
-from .page import (Page, chip, finite, html, integer, interval_text, large_unit, number, pretty_unit, prose, symbol,
-                   with_error)
-
-SYMBOLS = {"toughness": symbol("G", "c"), "yield_stress": symbol("σ", "y"), "friction": symbol("μ"),
-           "edge_force": symbol("F", "b"), "strength": symbol("σ", "c"), "adhesion_toughness": symbol("G", "a"),
-           "elastic_modulus": symbol("E"), "hardening_modulus": symbol("H")}
-PLAIN = {"toughness": "G_c", "yield_stress": "σ_y", "friction": "μ", "edge_force": "F_b", "strength": "σ_c"}
+from .estimates import interval_of, name_of, plain_name, value_text
+from .page import Page, chip, finite, html, integer, number, pretty_unit, prose, symbol
+from .uncertainty_page import add_uncertainty
 
 
 def page_of_calibration(calibration):
@@ -27,11 +23,7 @@ def page_of_calibration(calibration):
     _parameters(page, calibration)
     _data(page, calibration)
     _residuals(page, result)
-    _profiles(page, result)
-    _directions(page, result)
-    _correlation(page, result)
-    _posterior(page, result)
-    _error_budget(page, result)
+    add_uncertainty(page, result)
     _edge(page, result)
     _intercepts(page, calibration)
     _cut(page, calibration)
@@ -76,9 +68,9 @@ def _parameters(page, calibration):
     key = "interval_over_assumptions" if either else "interval"
     rows = []
     for name, p in result["parameters"].items():
-        rows.append([_name(name), _value(p), _interval(p, key), _track(p, key), _verdict(p.get("verdict"))])
+        rows.append([name_of(name), value_text(p), interval_of(p, key), _track(p, key), _verdict(p.get("verdict"))])
     for name, p in (result.get("derived") or {}).items():
-        rows.append([_name(name), _value(p), _interval(p, key), "", _verdict(p.get("verdict"))])
+        rows.append([name_of(name), value_text(p), interval_of(p, key), "", _verdict(p.get("verdict"))])
     heads = ["parameter", html("estimate ±<br>standard error"),
              html("95 % interval,<br>both edge assumptions") if either else "95 % interval",
              html("within the<br>search’s bounds"), "verdict"]
@@ -98,7 +90,7 @@ def _where_it_stopped(section, calibration):
     steps = search_steps(result)
     point = result.get("stopped_at") or {name: {"value": value, "unit": "1"} for name, value in
                                          (min(steps, key=lambda e: e["chi2"])["parameters"] if steps else {}).items()}
-    section.table(["parameter", "value"], [[_name(name), _value(p)] for name, p in point.items()],
+    section.table(["parameter", "value"], [[name_of(name), value_text(p)] for name, p in point.items()],
                   numeric=(1,))
     if finite(result.get("chi2")):
         section.text(html("Misfit there {} = {}; without slopes nothing can be said about errors.", Markup("χ²"),
@@ -106,31 +98,11 @@ def _where_it_stopped(section, calibration):
     section.warnings(calibration.notes)
 
 
-def _name(name):
-    return html('<span style="white-space:nowrap">{} {}</span>', name.replace("_", " "), SYMBOLS.get(name, ""))
-
-
 def _scale_remark(result):
     scale = result.get("error_scale")
     if finite(scale) and scale > 1.0001:
         return f"; errors are widened by {number(scale)}, the square root of the misfit per degree of freedom"
     return ""
-
-
-def _value(p):
-    if not finite(p.get("value")):
-        return "–"
-    factor, unit = large_unit(p["unit"], [p["value"]])
-    error = p.get("se")
-    return with_error(p["value"] * factor, error * factor if finite(error) else None, unit)
-
-
-def _interval(p, key="interval"):
-    interval = p.get(key)
-    if not interval:
-        return "–"
-    factor, unit = large_unit(p["unit"], [p.get("value")])
-    return interval_text(interval, factor)
 
 
 def _track(p, key="interval"):
@@ -224,140 +196,6 @@ def _about_runs(runs, factor, unit):
     return html("No run of equal signs is longer than chance explains: at most {}.", told)
 
 
-def _estimates(result):
-    return {**result["parameters"], **(result.get("derived") or {})}
-
-
-def _plain(name):
-    return PLAIN.get(name, name.replace("_", " "))
-
-
-def _titled(name):
-    return name.replace("_", " ") + (f" {PLAIN[name]}" if name in PLAIN else "")
-
-
-def _profiles(page, result):
-    scale = result.get("error_scale") or 1
-    quantile = (result.get("identifiability") or {}).get("interval_half_width_in_se") or 1.96
-    allowed = (quantile * scale) ** 2
-    estimates = [p | {"label": _titled(name), "measured": str(p.get("verdict", "")).startswith("measured"),
-                      "rise_per_se2": scale ** 2} for name, p in _estimates(result).items() if finite(p.get("value"))]
-    picture = finite(result.get("chi2")) and uncertainty_figures.profiles(estimates, result["chi2"], allowed)
-    if not picture:
-        return
-    section = page.section("Profiles of the misfit", "profiles", "profiles")
-    checked = any(finite((end or {}).get("chi2_simulated")) for p in estimates for end in p.get("ends") or ())
-    section.figure(picture, html(
-        "The least misfit with one quantity held and all others refitted on the quadratics fitted to the simulations; where it rises by {} "
-        "the 95 % interval (shaded) ends. Dashed: the parabola of the standard error, from which a profile that leans or "
-        "flattens departs.{}", number(allowed),
-        " Squares: ends of intervals that were simulated." if checked else ""))
-
-
-def _directions(page, result):
-    seen = result.get("identifiability") or {}
-    values = seen.get("singular_values")
-    if not values:
-        return
-    section = page.section("What these cuts can tell apart", "directions", "directions")
-    section.figure(uncertainty_figures.directions([_plain(name) for name in seen["names"]], values,
-                                                  seen["singular_vectors"]),
-                   "Directions of logarithmic parameter space, best known first, and their components. A singular value is "
-                   "the inverse of the relative error along its direction; below 2 (orange) the data do not determine it.")
-    if finite(values[-1]) and values[-1] > 0:
-        shares = sorted(zip(seen["names"], seen["singular_vectors"][-1]), key=lambda pair: -abs(pair[1] or 0))
-        makers = [SYMBOLS.get(name, name.replace("_", " ")) for name, share in shares if abs(share or 0) > 0.3][:2]
-        section.text(html("Least known is the direction of {} ({}). {}", html(" with ").join(makers),
-                          uncertainty_figures.known_to(values[-1]), _verdicts(result)))
-
-
-def _verdicts(result):
-    """"Yield stress and friction: measured; toughness: bounded above and below." """
-    by_verdict = {}
-    for name, p in _estimates(result).items():
-        by_verdict.setdefault(p.get("verdict") or "not judged", []).append(name.replace("_", " "))
-    text = "; ".join(f"{', '.join(names)}: {verdict}" for verdict, names in by_verdict.items())
-    trades = [f"{name.replace('_', ' ')} with {p['trade_off']['with'].replace('_', ' ')} (known is {_plain(name)} × "
-              f"{_plain(p['trade_off']['with'])}^{number(p['trade_off']['exponent'], digits=2)}, to "
-              f"{number(100 * p['trade_off']['relative_error'], digits=2)} %)"
-              for name, p in _estimates(result).items() if p.get("trade_off")]
-    return f"In words: {text}." + (f" It trades off: {'; '.join(trades)}." if trades else "")
-
-
-def _correlation(page, result):
-    seen = result.get("identifiability") or {}
-    matrix = seen.get("correlation")
-    picture = uncertainty_figures.correlation([_plain(name) for name in seen["names"]], matrix) if matrix else None
-    if not picture:
-        return
-    section = page.section("Correlation of the estimates", "correlation", "correlation")
-    pairs = [(abs(matrix[i][j]), i, j) for i in range(len(matrix)) for j in range(i) if finite(matrix[i][j])]
-    words = "No pair of estimates is seen by these data."
-    if pairs:
-        _, i, j = max(pairs)
-        names = [SYMBOLS.get(seen["names"][k], seen["names"][k].replace("_", " ")) for k in (j, i)]
-        words = html("Strongest between {} and {}: {}. {}", *names, f"{matrix[i][j]:+.2f}".replace("-", "−"),
-                     "Beyond ±0.9 only a combination of both is known." if abs(matrix[i][j]) > 0.9 else
-                     "Nowhere beyond ±0.9, from where on only a combination of both would be known.")
-    section.figure(picture, words)
-
-
-def _posterior(page, result):
-    drawn = result.get("posterior")
-    if not drawn:
-        return
-    estimates = [{"label": _titled(name), "unit": p["unit"], "draws": drawn["sample"][name], "interval": p.get("interval"),
-                  "credible": drawn["intervals"][name]} for name, p in _estimates(result).items()
-                 if name in drawn["sample"]]
-    section = page.section("Posterior density", "posterior", "posterior")
-    section.figure(uncertainty_figures.posterior(estimates), html(
-        "A second opinion on every interval: {} draws ({} of them independent) from the density of the parameters given the "
-        "data, uniform within the bounds of the search, over the quadratics fitted to the simulations. Solid lines: 95 % intervals by "
-        "profile; dashed: by the draws. {} draws are shown.", integer(drawn["draws"]), integer(drawn["independent"]),
-        integer(len(estimates[0]["draws"]))))
-
-
-def _error_budget(page, result):
-    budget = {name: shares for name, shares in (result.get("error_budget") or {}).items() if shares}
-    if not budget:
-        return
-    section = page.section("Where the errors come from", "budget", "error budget")
-    sources = uncertainty_figures.SOURCES
-    largest = [f"{_titled(name)}: {sources[source][0]} ({number(100 * share, digits=2)} %)"
-               for name, shares in budget.items() for source, share in [max(shares.items(), key=lambda pair: pair[1])]]
-    absent = [sources[source][0] for source in sources if all((shares.get(source) or 0) < 5e-4
-                                                              for shares in budget.values())]
-    section.figure(uncertainty_figures.error_budget([(_plain(name), shares) for name, shares in budget.items()]),
-                   prose("Each source's errors carried through the estimator, in per cent of the variance of every estimate. "
-                         "Largest for " + ", ".join(largest) + "." +
-                         (" Nothing from: " + ", ".join(absent) + "." if absent else "")))
-    section.text(html("Cell size, tool speed and damping shift all estimates together and scatter nothing, so they are no "
-                      "share of a variance: what is granted to them is the stated error of the model{}.",
-                      ", and the table shows what they do" if result.get("numerics") else
-                      html(", and a <code>[[numerics]]</code> in the job or <code>kerf study JOB.toml</code> measures "
-                           "them")))
-    if result.get("numerics"):
-        section.table(["under other numerics"] + [_name(name) for name in result["parameters"]] + ["χ²"],
-                      [_shifts(check, result["parameters"]) for check in result["numerics"]])
-
-
-def _shifts(check, parameters):
-    """A row: what one [[numerics]] moves, in the parameters' units and in standard errors."""
-    row = [html('{}<br><span class="why">{} cuts compared, {} new runs</span>', check["name"], integer(check["cuts"]),
-                integer(check["runs"]))]
-    for name, parameter in parameters.items():
-        shift = check["shifts"].get(name)
-        if not shift or not finite(shift["shift"]):
-            row.append("–")
-            continue
-        factor, unit = large_unit(shift["unit"], [parameter.get("value")])
-        by = number(abs(shift["shift"]) * factor, digits=2)
-        row.append(html('{}{} {}<br><span class="why">{} standard errors</span>', "−" if shift["shift"] < 0 else "+", by,
-                        pretty_unit(unit), number(abs(shift["standard_errors"]), digits=2)
-                        if finite(shift["standard_errors"]) else "no"))
-    return row + [number(check["chi2"])]
-
-
 def _edge(page, result):
     alternatives = result.get("alternatives") or []
     if not alternatives:
@@ -368,12 +206,12 @@ def _edge(page, result):
     fits = [result] + alternatives
     rows = []
     for name, fitted in result["parameters"].items():
-        row = [_name(name)]
+        row = [name_of(name)]
         for fit in fits:
             p = fit.get("parameters", {}).get(name)
-            row.append(html('{}<br><span class="why">{} · {}</span>', _value(p), _interval(p), p.get("verdict", "")) if p
+            row.append(html('{}<br><span class="why">{} · {}</span>', value_text(p), interval_of(p), p.get("verdict", "")) if p
                        else "–")
-        row.append(_interval(fitted, "interval_over_assumptions"))
+        row.append(interval_of(fitted, "interval_over_assumptions"))
         rows.append(row)
     rows.append([Markup("χ²")] + [html("{} <span class=\"why\">on {}</span>", number(fit.get("chi2")),
                                       fit.get("degrees_of_freedom", "?")) for fit in fits] + [""])
@@ -437,7 +275,7 @@ def _search(page, result):
     names = [name for name in steps[-1]["parameters"] if name in result["parameters"] or not result["parameters"]]
     taken = sum(step["kind"] == "accepted" and step["step"] != "start" for step in steps)
     refused = sum(step["kind"] == "refused" for step in steps)
-    section.figure(fit_figures.trace(steps, [(name, _plain(name)) for name in names]),
+    section.figure(fit_figures.trace(steps, [(name, plain_name(name)) for name in names]),
                    html("{} step{} taken (filled), {} not (hollow); it ended because {}. Start: {}.", taken,
                         "" if taken == 1 else "s", refused, result.get("reason") or "nobody said why",
                         result.get("start_origin", "as the job says").replace("_", " ")))
