@@ -36,7 +36,10 @@ void apply(const JobOverride& override, Job& job) {
   if (override.parallel > 0) job.budget.parallel = override.parallel;
   if (!override.backend.empty()) job.budget.backend = override.backend;
   if (!override.shared_runs.empty()) job.budget.shared_runs = fs::absolute(override.shared_runs).string();
-  if (!override.preset.empty()) forward::impose_preset(job.scene, override.preset, job.source.name);
+  if (override.preset.empty()) return;
+  forward::impose_preset(job.scene, override.preset, job.source.name);
+  for (MeasuredCurve& curve : job.curves)
+    if (curve.specimen) forward::impose_preset(*curve.specimen, override.preset, job.source.name);
 }
 
 std::unique_ptr<Journal> open_journal(const fs::path& folder) {

@@ -13,7 +13,7 @@ namespace kerf::inverse {
 struct JobOverride {
   std::size_t max_runs = 0;
   int parallel = 0;
-  std::string preset = {};       ///< written over the scene (see forward/scene/preset.hpp)
+  std::string preset = {};       ///< written over all scenes (see forward/scene/preset.hpp)
   std::string backend = {};      ///< see find_backend
   std::string shared_runs = {};  ///< a folder (see SharedRuns)
 };

@@ -192,10 +192,11 @@ InputFile load(const std::string& name, const Locate& locate) {
 }
 
 /// The points of an R-curve; one simulated pull of the specimen answers for all of them.
-void add_resistance(Job& job, const Values& values, const Locate& locate) {
+void add_resistance(Job& job, const Values& top, const Values& values, const Locate& locate) {
   MeasuredCurve& curve = job.curves.back();
   curve.specimen_file = load(values.text("scene"), locate);
   curve.specimen = Document::parse(curve.specimen_file->content, locate(curve.specimen_file->name).string());
+  if (top.has("preset")) forward::impose_preset(*curve.specimen, top.text("preset"), top.where("preset"));
   apply_settings(curve.changes, *curve.specimen, forward::scene_blocks(), values.where("changes"));
   const forward::Scene scene = forward::read_scene(*curve.specimen);
   if (!scene.grips)
@@ -350,7 +351,7 @@ Job read_job(const fs::path& file, const std::string& name, const Locate& locate
                           .specimen_file = {},
                           .specimen = {}});
     if (values.has("scene")) {
-      add_resistance(job, values, locate);
+      add_resistance(job, top, values, locate);
       continue;
     }
     const InputFile& file = job.curves.back().file;

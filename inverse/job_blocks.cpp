@@ -17,7 +17,7 @@ std::vector<Block> declare() {
        .meaning = "the calibration itself",
        .parameters = {text("title", "what this calibration is about"),
                       text("scene", "base scene whose parameters are to be found, a path relative to this file"),
-                      text("preset", "what accuracy may cost: written over the scene's own keys (`kerf list preset`)",
+                      text("preset", "what accuracy may cost: written over the scenes' own keys (`kerf list preset`)",
                            {forward::preset_names.begin(), forward::preset_names.end()})
                           .if_given(),
                       list("observables", "what simulated and measured cuts are compared by; R-curves always by G_R",

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "inverse/calibration_json.hpp"
+#include "inverse/folder.hpp"
 #include "models/laws/trilinear.hpp"
 #include "tests/unit/synthetic_cut.hpp"
 
@@ -130,6 +131,22 @@ TEST(RCurveJob, LeavesOutExtensionsThatTheSpecimenDoesNotReach) {
   const auto outcome = testing::calibrate(job, folder / "journal.jsonl", wooden);
   EXPECT_EQ(inverse::count(outcome.calibration.fit.at.usable), 7U);
   EXPECT_NEAR(testing::value(outcome.calibration, "bridging_toughness"), bridging, 1e-3 * bridging);
+}
+
+TEST(RCurveJob, APresetHoldsForTheSpecimenToo) {
+  const TemporaryFolder folder;
+  const auto cells = [](const inverse::Job& job) {
+    return forward::read_scene(job.curves.back().specimen.value()).resolution.cells_through_chip;
+  };
+  const std::string changes = "changes = [\"resolution.cells_through_chip=7\"]\n";
+  const inverse::Job as_told = job_of(folder, alone + r_curve + free_toughnesses);
+  ASSERT_EQ(cells(as_told), 4);
+  EXPECT_EQ(cells(job_of(folder, "preset = \"standard\"\n" + alone + r_curve + free_toughnesses)), 8);
+  EXPECT_EQ(cells(job_of(folder, "preset = \"standard\"\n" + alone + r_curve + changes + free_toughnesses)), 7);
+  inverse::JobOverride standard;
+  standard.preset = "standard";
+  const auto kept = inverse::Folder::create(folder / "out", folder / "job.toml", standard, "code");
+  EXPECT_EQ(cells(kept.job()), 8) << "a preset from outside is written over what the job says";
 }
 
 TEST(RCurveJob, CoarseRunsAndOtherNumericsLeaveTheSpecimenAlone) {
