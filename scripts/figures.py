@@ -18,7 +18,7 @@ from figures_of_bodies import bodies, bodies_precision, contact, layers  # noqa:
 from matplotlib.patches import Circle, Polygon  # noqa: E402
 from PIL import Image  # noqa: E402
 from report.cut import fill_between_particles, read_cut, tool_outlines  # noqa: E402
-from report.study import draw_work_precision, legend_of, read_study  # noqa: E402
+from report.study import draw_estimates, draw_work_precision, legend_of, read_study  # noqa: E402
 from report.style import ACCENT, INK, QUIET, SAND, STRAIN, WARM, figure, light_grid  # noqa: E402
 
 # What the paper prints (Nairn 2016): forces in J/m^2 against depth in mm for a chip breaker and a mouth of 1.2 mm.
@@ -324,10 +324,16 @@ def work_precision(results):
     return fig
 
 
+def job_precision(results):
+    """What a calibration finds at every preset, against core-seconds."""
+    return draw_estimates(read_study(results / "study_job"))
+
+
 # A figure and the result without which it cannot be drawn.
 FIGURES = {"plane_chips": (chips, "plane_mouth"), "talk_forces": (talk, "talk"), "talk_effects": (effects, "talk_rake"),
            "bottom_force": (bottom, "talk_edge"), "wood_forces": (wood, "wood_rl"), "plane_forces": (plane, "plane_m12"),
            "laws": (laws, "laws"), "work_precision": (work_precision, "study_polymer"),
+           "job_precision": (job_precision, "study_job/study.json"),
            "veneer": (veneer, "veneer.h5"), "contact": (contact, "hertz.json"),
            "bodies_precision": (bodies_precision, "study_bar"), "bodies": (bodies, "carnot_gas.json"),
            "layers": (layers, "laminate_45_30.json")}
@@ -339,7 +345,11 @@ def main():
         if not (results / needed).exists():
             print(f"{name}: left as it is, there is no {results / needed}", file=sys.stderr)
             continue
-        fig = draw(results)
+        try:
+            fig = draw(results)
+        except FileNotFoundError as error:
+            print(f"{name}: left as it is, there is no {error.filename}", file=sys.stderr)
+            continue
         file = output / f"{name}.png"
         fig.savefig(file, dpi=110, facecolor="white")
         with Image.open(file) as picture:  # a palette takes a third of the room

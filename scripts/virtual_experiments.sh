@@ -8,9 +8,10 @@ cd "$(dirname "$0")/.."
 
 scenes=data/scenes
 wanted=("$@")
+is_wanted() { [[ ${#wanted[@]} -eq 0 || " ${wanted[*]} " == *" $1 "* ]]; }
 experiment() {  # COMMAND NAME SCENE ARGUMENTS...
   local name=$2
-  [[ ${#wanted[@]} -eq 0 || " ${wanted[*]} " == *" $name "* ]] || return 0
+  is_wanted "$name" || return 0
   echo "== $name"
   # 4: some runs were refused, and the table says why.
   build/release/kerf "$1" "$scenes/$3.toml" "${@:4}" -o "results/experiments/$name" || [[ $? -eq 4 ]]
@@ -49,17 +50,23 @@ study study_wood wood_rl resolution.cells_through_chip=x0.75,x1.25 cut.speed=x2,
 study study_bar vibrating_bar box.cell=x2,x0.5 box.particles_per_cell_side=1,3 box.courant_number=x0.5,x1.5 \
   numerics.shape=uGIMP,linear numerics.transfer=PIC,APIC,XPIC numerics.stress_update=USF,USL,MUSL --reference box.cell=x0.25
 
-build/release/kerf simulate "$scenes/veneer.toml" -o results/experiments/veneer.h5
+if is_wanted study_job; then
+  build/release/kerf study data/jobs/wood_tl_r_curve.toml -o results/experiments/study_job
+fi
 
-# The same particles as an engine, a rubber band and a glued bar.
+# The same particles as a log, an engine, a rubber band and a glued bar.
+if is_wanted veneer; then build/release/kerf simulate "$scenes/veneer.toml" -o results/experiments/veneer.h5; fi
 for name in carnot_gas carnot_tungsten carnot_tungsten_plastic rubber_gough incline hertz; do
+  is_wanted "$name" || continue
   build/release/kerf simulate "$scenes/$name.toml" -o "results/experiments/$name.json"
 done
 for stiffness in 1 3 10 30 100 1e3 1e5 1e7 1e9; do
+  is_wanted interface_bar || continue
   build/release/kerf simulate "$scenes/interface_bar.toml" --set "interface.normal=$stiffness MPa/mm" \
     -o "results/experiments/interface_bar_$stiffness.json"
 done
 for angle in 0 15 30 45 60 90; do
+  is_wanted laminate || continue
   for stiffness in 30 1e3 5e8; do
     scene=results/experiments/laminate_${angle}_$stiffness
     sed "s/\"60 deg\"/\"$((90 - angle)) deg\"/; s/\"-120 deg\"/\"$((-90 - angle)) deg\"/" "$scenes/laminate.toml" >"$scene.toml"

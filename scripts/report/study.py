@@ -270,6 +270,12 @@ def draw_error_against_cell(ax, study):
 
 
 def estimates(study):
+    """None of a job that found nothing."""
+    fig = draw_estimates(study)
+    return fig and svg(fig, "estimate of every free parameter against core-seconds")
+
+
+def draw_estimates(study):
     """Of a job: every free parameter's estimate at each preset, with its interval, against core-seconds."""
     presets = [preset for preset in study.result["presets"] if finite(preset.get("core_s")) and preset["core_s"] > 0]
     names = list(dict.fromkeys(name for preset in presets for name in preset["parameters"]))
@@ -298,4 +304,4 @@ def estimates(study):
         ax.set_xlabel("core-seconds")
         ax.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
         ax.xaxis.set_minor_formatter(NullFormatter())
-    return svg(fig, "estimate of every free parameter against core-seconds")
+    return fig
