@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "tests/unit/modelled_cut.hpp"
 
 namespace kerf {
@@ -107,6 +109,40 @@ TEST(LocalModel, GoesOnStraightBeyondItsReach) {
   EXPECT_NEAR(slope(2), slope(0.51), 1e-6);
   EXPECT_NEAR(slope(-2), slope(-0.51), 1e-6);
   EXPECT_NEAR(slope(0.52), slope(0.48), 0.1 * bend);
+}
+
+TEST(LocalModel, IsNotBentByTheRoughnessOfACutThatWasNotAudited) {
+  const TemporaryFolder folder;
+  // The deepest cut is rough by 0.2 %, three hundred times what is said.
+  const auto one_rough = [](const forward::Scene& scene) {
+    forward::CutResult result = synthetic_cut(scene);
+    if (scene.cut.depth > 0.5) result.F_c.value *= 1 + 0.003 * std::sin(1e6 * result.F_c.value);
+    return result;
+  };
+  const std::string text = std::string(job_text) + "[optimiser]\nstep = 0.15\nnoise = 7e-6\n";
+  ModelledCut smooth(write_job(folder, text), folder / "smooth"),
+      cut(write_job(folder, text), folder / "rough", one_rough);
+  const inverse::LocalModel exact = smooth.about(cut.truth());
+  auto model = cut.about(cut.truth());
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  for (const double size : {0.005, 0.01, 0.01, 0.02, 0.02, 0.05, 0.1, 0.15, 0.2}) {
+    const Eigen::Vector3d direction = Eigen::Vector3d::NullaryExpr([&] { return normal(random); });
+    model.learn(cut.objective.evaluate(cut.truth() + size * direction.normalized()));
+  }
+  EXPECT_LT((model.slopes(0) - exact.slopes(0)).topRows(3).cwiseAbs().maxCoeff(), 0.02);
+  EXPECT_LT((model.slopes(0) - exact.slopes(0)).row(3).cwiseAbs().maxCoeff(), 0.05);
+  for (Eigen::Index j = 0; j < 3; ++j) {
+    const double error = std::sqrt(model.slope_covariance(3, 0)(j, j));
+    EXPECT_GT(error, 0.003) << "what is rough by 0.2 % tells slopes over 0.15 to a hundredth";
+    EXPECT_LT(error, 0.03);
+    for (const double step : {-0.2, 0.2}) {
+      Eigen::VectorXd there = cut.truth();
+      there[j] += step;
+      const double change = std::log(model.predict(there)(3, 0) / exact.predict(there)(3, 0));
+      EXPECT_LT(std::abs(change), 0.012);
+    }
+  }
 }
 
 }  // namespace
