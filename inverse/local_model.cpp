@@ -2,7 +2,6 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <numbers>
 
 #include "inverse/quadratic_response.hpp"
 
@@ -74,6 +73,7 @@ void LocalModel::add(std::size_t cut, const Eigen::VectorXd& point, const RunRec
 }
 
 void LocalModel::refit() {
+  std::vector<Eigen::MatrixXd> steps(runs_.size()), changes(runs_.size());
   for (std::size_t cut = 0; cut < runs_.size(); ++cut) {
     if (!base_.usable[cut]) continue;
     std::vector<const Run*> used;
@@ -84,28 +84,45 @@ void LocalModel::refit() {
       else if (run.point != base_.point)
         used.push_back(&run);
     const auto row = static_cast<Eigen::Index>(cut);
-    // What lies beyond the reach of a parabola is heard only where the runs within tell nothing.
+    // What lies beyond the reach of a parabola is not heard where the runs within tell slopes as differences would.
     const auto far = std::stable_partition(used.begin(), used.end(),
                                            [&](const Run* run) { return (run->point - base_.point).norm() <= reach; });
     const Eigen::MatrixXd near = steps_of({used.begin(), far});
-    const Eigen::MatrixXd steps = slope_errors(near).maxCoeff() <= unknown_error() ? near : steps_of(used);
-    told_.row(row) = slope_errors(steps).transpose();
+    const double enough = 2 * fresh_error({.roughness = choice_.roughness});
+    steps[cut] = errors_if_usual(near).maxCoeff() <= enough ? near : steps_of(used);
+    told_.row(row) = errors_if_usual(steps[cut]).transpose();
     has_slopes_[cut] = told_.row(row).maxCoeff() <= unknown_error();
-    Eigen::MatrixXd changes(steps.rows(), base_.simulated.cols());
+    changes[cut].resize(steps[cut].rows(), base_.simulated.cols());
     const Eigen::RowVectorXd here = model_scale(base_.simulated.row(row));
-    for (Eigen::Index i = 0; i < changes.rows(); ++i) changes.row(i) = used[static_cast<std::size_t>(i)]->scaled - here;
-    for (Eigen::Index k = 0; k < changes.cols(); ++k) {
-      if (!changes.col(k).allFinite()) continue;  // it was not simulated
-      const Texture texture = likeliest_texture(steps, changes.col(k), said_texture(cut, k));
-      const QuadraticResponse response(steps, texture);
-      const auto observable = static_cast<std::size_t>(k);
-      slopes_[observable].row(row) = response.slopes(changes.col(k)).transpose();
-      curvatures_[observable][cut] = response.curvatures(changes.col(k));
-      errors_[observable].row(row) = response.slope_errors().transpose();
-      rough_covariances_[observable][cut] = response.rough_covariance();
-      fresh_errors_(row, k) = fresh_error(texture);
-    }
-    silence(cut, steps, changes);
+    for (Eigen::Index i = 0; i < steps[cut].rows(); ++i)
+      changes[cut].row(i) = used[static_cast<std::size_t>(i)]->scaled - here;
+  }
+  for (Eigen::Index k = 0; k < base_.simulated.cols(); ++k) refit(k, steps, changes);
+  for (std::size_t cut = 0; cut < runs_.size(); ++cut)
+    if (base_.usable[cut]) silence(cut, steps[cut], changes[cut]);
+}
+
+void LocalModel::refit(Eigen::Index observable, const std::vector<Eigen::MatrixXd>& steps,
+                       const std::vector<Eigen::MatrixXd>& changes) {
+  const auto k = static_cast<std::size_t>(observable);
+  std::vector<std::size_t> cuts;
+  std::vector<ResponseSample> samples;
+  for (std::size_t cut = 0; cut < runs_.size(); ++cut) {
+    if (!base_.usable[cut] || !std::isfinite(base_.simulated(static_cast<Eigen::Index>(cut), observable)) ||
+        !changes[cut].col(observable).allFinite())
+      continue;  // it was not simulated
+    cuts.push_back(cut);
+    samples.push_back({steps[cut], changes[cut].col(observable), said_texture(cut, observable)});
+  }
+  const std::vector<Texture> textures = likeliest_textures(samples);
+  for (std::size_t i = 0; i < cuts.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(cuts[i]);
+    const QuadraticResponse response(samples[i].steps, textures[i]);
+    slopes_[k].row(row) = response.slopes(samples[i].changes).transpose();
+    curvatures_[k][cuts[i]] = response.curvatures(samples[i].changes);
+    errors_[k].row(row) = response.slope_errors().transpose();
+    rough_covariances_[k][cuts[i]] = response.rough_covariance();
+    fresh_errors_(row, observable) = fresh_error(textures[i]);
   }
 }
 
@@ -116,7 +133,7 @@ Eigen::MatrixXd LocalModel::steps_of(const std::vector<const Run*>& runs) const 
   return steps;
 }
 
-Eigen::VectorXd LocalModel::slope_errors(const Eigen::MatrixXd& steps) const {
+Eigen::VectorXd LocalModel::errors_if_usual(const Eigen::MatrixXd& steps) const {
   return QuadraticResponse(steps, {.roughness = choice_.roughness}).slope_errors();
 }
 
@@ -125,9 +142,11 @@ Texture LocalModel::said_texture(std::size_t cut, Eigen::Index observable) const
   // A mean force is known to the standard error of its window. Neighbours swing alike and share it; F_t/F_c has none,
   // since both swing together.
   const double own = simulation_errors(base_.runs[cut])[static_cast<std::size_t>(observable)];
-  const double size = is_logarithmic(observable) ? base_.simulated(row, observable) : 1;
-  return {.roughness = choice_.roughness * model_size(base_, row, observable),
-          .ripple = observable == F_t || !std::isfinite(own) ? 0 : own / size};
+  const double value = is_logarithmic(observable) ? base_.simulated(row, observable) : 1;
+  const double size = model_size(base_, row, observable);
+  return {.roughness = choice_.roughness * size,
+          .ripple = observable == F_t || !std::isfinite(own) ? 0 : own / value,
+          .bend = is_logarithmic(observable) || observable == F_t ? 1 : std::max(size, 1e-6)};
 }
 
 void LocalModel::silence(std::size_t cut, const Eigen::MatrixXd& steps, const Eigen::MatrixXd& changes) {
@@ -168,20 +187,22 @@ LocalModel::SlopeMask LocalModel::unsure(const Objective& objective) const {
   SlopeMask result(told_.rows(), n);
   for (Eigen::Index i = 0; i < told_.rows(); ++i)
     for (Eigen::Index j = 0; j < n; ++j) {
-      double feigned = 0;
-      bool improvable = false;
+      double feigned = 0;  // by what another difference would tell better
       for (Eigen::Index k = 0; k < base_.simulated.cols(); ++k) {
-        const auto observable = static_cast<std::size_t>(k);
         const double weight = misfit.weights()(i, k);
-        if (weight == 0 || silent_[observable](i, j)) continue;
-        const double error = errors_[observable](i, j);
-        const double value = is_logarithmic(k) ? base_.simulated(i, k) : unit(base_, i, k);
-        feigned += std::pow(weight * value * error, 2);
-        improvable |= error > worse_than_fresh * fresh_errors_(i, k);
+        if (weight == 0) continue;
+        const auto add = [&](Eigen::Index of, double value) {
+          const auto observable = static_cast<std::size_t>(of);
+          const double error = errors_[observable](i, j);
+          if (!silent_[observable](i, j) && error > worse_than_fresh * fresh_errors_(i, of))
+            feigned += std::pow(weight * value * error, 2);
+        };
+        add(k, is_logarithmic(k) ? base_.simulated(i, k) : unit(base_, i, k));
+        if (k == F_t) add(F_c, base_.simulated(i, F_t));
       }
       const auto cut = static_cast<std::size_t>(i);
       const bool matters = feigned * variances[j] * static_cast<double>(count(base_.usable)) > harmless;
-      result(i, j) = base_.usable[cut] && (told_(i, j) > unknown_error() || (matters && improvable));
+      result(i, j) = base_.usable[cut] && (told_(i, j) > unknown_error() || matters);
     }
   return result;
 }
@@ -321,10 +342,15 @@ void LocalModel::move_to(const Evaluation& other) {
 }
 
 Eigen::MatrixXd LocalModel::slope_covariance(Eigen::Index cut, Eigen::Index observable) const {
-  const auto k = static_cast<std::size_t>(observable);
-  const double one = unit(base_, cut, observable);
-  const auto heard = (!silent_[k].row(cut).array()).cast<double>().matrix();
-  return one * one * heard.asDiagonal() * rough_covariances_[k][static_cast<std::size_t>(cut)] * heard.asDiagonal();
+  const auto of = [&](Eigen::Index one_of, double value) -> Eigen::MatrixXd {
+    const auto k = static_cast<std::size_t>(one_of);
+    const auto heard = (!silent_[k].row(cut).array()).cast<double>().matrix();
+    return value * value * heard.asDiagonal() * rough_covariances_[k][static_cast<std::size_t>(cut)] *
+           heard.asDiagonal();
+  };
+  const Eigen::MatrixXd own = of(observable, unit(base_, cut, observable));
+  // What is modelled as a ratio to F_c has the errors of both.
+  return observable == F_t ? own + of(F_c, base_.simulated(cut, F_t)) : own;
 }
 
 bool LocalModel::branches_differ(const Evaluation& a, const Evaluation& b) {

@@ -107,9 +107,12 @@ class LocalModel {
 
   void add(std::size_t cut, const Eigen::VectorXd& point, const RunRecord& run, const Eigen::RowVectorXd& simulated);
   void refit();
+  /// Of one observable; steps and changes (runs x observables) of every cut.
+  void refit(Eigen::Index observable, const std::vector<Eigen::MatrixXd>& steps,
+             const std::vector<Eigen::MatrixXd>& changes);
   Eigen::MatrixXd steps_of(const std::vector<const Run*>& runs) const;
-  /// If all were as rough as the audit says and as bent as usual.
-  Eigen::VectorXd slope_errors(const Eigen::MatrixXd& steps) const;
+  /// Errors of slopes over such steps if all were as rough as the audit says and as bent as usual.
+  Eigen::VectorXd errors_if_usual(const Eigen::MatrixXd& steps) const;
   /// Of an observable on the model's scale: what the noise audit and the cut's own error say.
   Texture said_texture(std::size_t cut, Eigen::Index observable) const;
   /// A parameter alone that changes an observable by not one bit does not act on it: no fit through other runs may say
@@ -133,7 +136,7 @@ class LocalModel {
   std::array<Eigen::MatrixXd, observable_count> errors_;  ///< of the slopes, all that is not known: cuts x parameters
   std::array<std::vector<Eigen::MatrixXd>, observable_count> rough_covariances_;  ///< of the slopes of every cut
   Eigen::MatrixXd fresh_errors_;  ///< of a difference: cuts x observables
-  Eigen::MatrixXd told_;          ///< errors if all were as rough and bent as usual: whether runs tell a slope at all
+  Eigen::MatrixXd told_;          ///< errors_if_usual() of what is heard: whether it tells a slope at all
   CutMask has_slopes_, at_jump_;
   bool fresh_ = false;  ///< every difference that matters was taken at the present base
 };

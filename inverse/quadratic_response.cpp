@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace kerf::inverse {
 namespace {
@@ -87,41 +88,107 @@ Eigen::MatrixXd QuadraticResponse::curvatures(const Eigen::VectorXd& changes) co
   return result;
 }
 
-Texture likeliest_texture(const Eigen::MatrixXd& steps, const Eigen::VectorXd& changes, const Texture& said) {
-  using Doublings = std::array<int, 2>;  // of roughness and bend
-  // How readily they leave what was said: standard deviations of their logarithms, and two of a normal error at least.
-  constexpr std::array<double, 2> trust{1.5, 0.7};
-  constexpr double good_reason = 4;
-  const auto texture = [&](const Doublings& more) {
-    Texture result = said;
-    if (more[0] > 0) result.roughness = std::ldexp(std::max(said.roughness, rounding), more[0]);
-    result.bend = std::ldexp(said.bend, more[1]);
-    return result;
-  };
-  const auto unlikeliness = [&](const Doublings& more) {
-    double sum = QuadraticResponse(steps, texture(more)).unlikeliness(changes);
-    for (std::size_t i = 0; i < more.size(); ++i) sum += std::pow(std::log(2.0) * more[i] / trust[i], 2);
+namespace {
+
+// How readily textures leave what was said: standard deviations of the logarithms of roughness and bend.
+constexpr std::array<double, 2> trust{1.5, 0.7};
+constexpr double good_reason = 4;  // by which -2 ln of the density must fall, as a normal error of two does
+
+using Doublings = std::array<int, 2>;  // of roughness and bend
+
+Texture doubled(const Texture& said, const Doublings& more) {
+  Texture result = said;
+  if (more[0] > 0) result.roughness = std::ldexp(std::max(said.roughness, rounding), more[0]);
+  result.bend = std::ldexp(said.bend, more[1]);
+  return result;
+}
+
+double reluctance(const Doublings& more) {
+  double sum = 0;
+  for (std::size_t i = 0; i < more.size(); ++i) sum += std::pow(std::log(2.0) * more[i] / trust[i], 2);
+  return sum;
+}
+
+double unlikeliness(const ResponseSample& sample, const Doublings& more) {
+  return QuadraticResponse(sample.steps, doubled(sample.said, more)).unlikeliness(sample.changes) + reluctance(more);
+}
+
+/// Whether the runs are more than its slopes explain.
+bool tells(const ResponseSample& sample) {
+  return sample.steps.rows() > sample.steps.cols();
+}
+
+/// How many times all are twice as rough as said, each as bent as it likes.
+int rougher_together(const std::vector<ResponseSample>& samples) {
+  constexpr int roughest = 14;
+  const auto together = [&](int rougher) {
+    double sum = reluctance({rougher, 0});
+    for (const ResponseSample& sample : samples) {
+      if (!tells(sample)) continue;
+      double least = std::numeric_limits<double>::infinity();
+      for (const int more_bent : {0, 1, 2, 4}) {
+        const double found =
+            QuadraticResponse(sample.steps, doubled(sample.said, {rougher, more_bent})).unlikeliness(sample.changes) +
+            reluctance({0, more_bent});
+        if (found > least) break;
+        least = found;
+      }
+      sum += least;
+    }
     return sum;
   };
-  if (steps.rows() <= steps.cols()) return said;  // slopes explain everything
-  Doublings best{0, 0};
-  double lowest = unlikeliness(best);
-  // Downhill by single doublings, or over a ridge.
-  constexpr std::array<Doublings, 7> moves{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {3, 0}, {1, -1}, {-1, 1}}};
-  for (bool falling = true; falling;) {
-    falling = false;
-    const Doublings from = best;
-    for (const Doublings& move : moves) {
-      const Doublings to{from[0] + move[0], from[1] + move[1]};
-      if (to[0] < 0 || to[1] < 0) continue;
-      const double found = unlikeliness(to);
-      if (!(found < lowest - 1e-9)) continue;
-      lowest = found;
-      best = to;
-      falling = true;
-    }
+  int best = 0;
+  double lowest = together(0);
+  for (int rougher = 1; rougher <= roughest; ++rougher) {
+    const double found = together(rougher);
+    if (found > lowest + 20) break;  // past the minimum
+    if (found >= lowest) continue;
+    lowest = found;
+    best = rougher;
   }
-  return lowest < unlikeliness({0, 0}) - good_reason ? texture(best) : said;
+  return best;
+}
+
+Texture likeliest_alone(const ResponseSample& sample) {
+  if (!tells(sample)) return sample.said;
+  const double as_said = unlikeliness(sample, {0, 0});
+  Doublings best{0, 0};
+  double lowest = as_said;
+  // Downhill by single doublings, or over a ridge; from what was said, and from much rougher and more bent.
+  constexpr std::array<Doublings, 7> moves{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {3, 0}, {1, -1}, {-1, 1}}};
+  for (const Doublings start : {Doublings{0, 0}, Doublings{5, 3}}) {
+    Doublings here = start;
+    double height = unlikeliness(sample, here);
+    for (bool falling = true; falling;) {
+      falling = false;
+      const Doublings from = here;
+      for (const Doublings& move : moves) {
+        const Doublings to{from[0] + move[0], from[1] + move[1]};
+        if (to[0] < 0 || to[1] < 0) continue;
+        const double found = unlikeliness(sample, to);
+        if (!(found < height - 1e-9)) continue;
+        height = found;
+        here = to;
+        falling = true;
+      }
+    }
+    if (height >= lowest) continue;
+    lowest = height;
+    best = here;
+  }
+  return lowest < as_said - good_reason ? doubled(sample.said, best) : sample.said;
+}
+
+}  // namespace
+
+std::vector<Texture> likeliest_textures(const std::vector<ResponseSample>& samples) {
+  const int rougher = rougher_together(samples);
+  std::vector<Texture> textures;
+  for (ResponseSample sample : samples) {
+    sample.said = doubled(sample.said, {rougher, 0});
+    textures.push_back(likeliest_alone(sample));
+  }
+  return textures;
 }
 
 }  // namespace kerf::inverse

@@ -1,15 +1,15 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 namespace kerf::inverse {
 
-/// How far values depart from a smooth plane, all of a logarithm and per search coordinates.
+/// How far values depart from a smooth plane, on the scale of their changes and per search coordinates.
 struct Texture {
   double roughness = 0;  ///< standard deviation that no two values share
-  double ripple =
-      0;  ///< standard deviation that values share with those much nearer than QuadraticResponse::ripple_length
-  double bend = 1;  ///< curvature and third order, in multiples of the usual ones
+  double ripple = 0;     ///< standard deviation that values share with those much nearer than ripple_length
+  double bend = 1;       ///< curvature and third order, in multiples of the usual ones
 };
 
 /// How a quantity with a texture answers small steps d of the parameters, from its changes over any number of such
@@ -22,7 +22,10 @@ struct Texture {
 /// process with a polynomial kernel: Rasmussen & Williams, Gaussian Processes for Machine Learning, 2006, sec. 2.1).
 class QuadraticResponse {
  public:
-  static constexpr double any_slope = 30, usual_curvature = 0.4, usual_third_order = 0.4, ripple_length = 0.3;
+  static constexpr double any_slope = 30, usual_curvature = 0.4, usual_third_order = 0.4;
+  /// Of a chip that swings: changes of wood's forces over 0.15 agree with those over 0.05 to a tenth of the standard
+  /// errors that their runs state, over 0.4 to one of them.
+  static constexpr double ripple_length = 0.3;
 
   /// `steps`: one per row, none of length zero. A quantity that is no logarithm has its texture on its own scale.
   QuadraticResponse(const Eigen::MatrixXd& steps, const Texture& texture);
@@ -50,8 +53,16 @@ class QuadraticResponse {
   double log_volume_ = 0;  ///< ln of the determinant of the changes' covariance
 };
 
-/// The texture that makes changes likeliest: rougher and more bent than said only for good reasons (type II maximum
-/// likelihood with priors: sec. 5.4 of the same book), with the ripple that was said.
-Texture likeliest_texture(const Eigen::MatrixXd& steps, const Eigen::VectorXd& changes, const Texture& said);
+/// Changes of one quantity over steps from one place, and the texture that it is said to have.
+struct ResponseSample {
+  Eigen::MatrixXd steps;
+  Eigen::VectorXd changes;
+  Texture said;
+};
+
+/// The textures that make samples of alike quantities likeliest, with the ripples that were said (type II maximum
+/// likelihood with priors: sec. 5.4 of the same book). All may be rougher than said by one and the same factor, which
+/// they know together and not alone; beyond that each may be rougher and more bent, for good reasons.
+std::vector<Texture> likeliest_textures(const std::vector<ResponseSample>& samples);
 
 }  // namespace kerf::inverse

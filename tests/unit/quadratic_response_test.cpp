@@ -87,6 +87,10 @@ TEST(QuadraticResponse, ErrorsAreThoseOfRepeatedExperiments) {
   for (Eigen::Index j = 0; j < 3; ++j) EXPECT_NEAR(std::sqrt(all[j]) / response.slope_errors()[j], 1, 0.05);
 }
 
+Texture likeliest_texture(const Eigen::MatrixXd& steps, const Eigen::VectorXd& changes, double roughness) {
+  return inverse::likeliest_textures({{steps, changes, {.roughness = roughness}}}).front();
+}
+
 /// Rough values, that of the base in common.
 Eigen::VectorXd roughened(Eigen::VectorXd changes, double roughness, std::mt19937_64& random) {
   std::normal_distribution<double> normal(0, roughness);
@@ -100,8 +104,7 @@ TEST(Texture, StaysAsSaidWhereValuesAreSo) {
   int left = 0;
   for (unsigned seed = 0; seed < 100; ++seed) {
     const Eigen::MatrixXd steps = scattered(12, 0.3, seed);
-    const Texture found =
-        inverse::likeliest_texture(steps, roughened(changes(steps), 0.001, random), {.roughness = 0.001});
+    const Texture found = likeliest_texture(steps, roughened(changes(steps), 0.001, random), 0.001);
     left += found.roughness > 0.002 || found.bend > 1 ? 1 : 0;
   }
   EXPECT_LE(left, 5);
@@ -110,7 +113,7 @@ TEST(Texture, StaysAsSaidWhereValuesAreSo) {
 TEST(Texture, FindsWhatBendsMoreThanUsual) {
   const Eigen::MatrixXd steps = scattered(20, 0.3, 4);
   const Eigen::VectorXd straight = steps * slopes, bent = straight + 20 * (changes(steps) - straight);
-  const Texture found = inverse::likeliest_texture(steps, bent, {.roughness = 0.001});
+  const Texture found = likeliest_texture(steps, bent, 0.001);
   EXPECT_LE(found.roughness, 0.004);
   EXPECT_GE(found.bend, 4);
   EXPECT_LT((QuadraticResponse(steps, found).slopes(bent) - slopes).norm(), 0.02);
@@ -124,7 +127,7 @@ TEST(Texture, FindsRoughnessThatNobodySaid) {
   constexpr int draws = 200;
   for (int i = 0; i < draws; ++i) {
     const Eigen::VectorXd rough = roughened(changes(steps), 0.02, random);
-    const Texture found = inverse::likeliest_texture(steps, rough, {.roughness = 0.001});
+    const Texture found = likeliest_texture(steps, rough, 0.001);
     const QuadraticResponse response(steps, found);
     logarithm += std::log(found.roughness / 0.02) / draws;
     error += (response.slopes(rough) - slopes).squaredNorm() / draws;
@@ -132,6 +135,30 @@ TEST(Texture, FindsRoughnessThatNobodySaid) {
   }
   EXPECT_NEAR(logarithm, 0, 0.35) << "it goes by doublings, and is held a little at what was said";
   EXPECT_NEAR(std::sqrt(error / claimed), 1, 0.2);
+}
+
+TEST(Texture, IsKnownTogetherWhereItIsNotKnownAlone) {
+  // Eight cuts of three differences and five runs more, seventy times as rough as said.
+  std::mt19937_64 random(9);
+  double logarithm = 0, error = 0, claimed = 0;
+  constexpr int draws = 20;
+  for (int draw = 0; draw < draws; ++draw) {
+    std::vector<inverse::ResponseSample> samples;
+    for (unsigned cut = 0; cut < 8; ++cut) {
+      Eigen::MatrixXd steps(8, 3);
+      steps << 0.04 * Eigen::Matrix3d::Identity(), scattered(5, 0.15, 8 * static_cast<unsigned>(draw) + cut);
+      samples.push_back({steps, roughened(changes(steps), 0.002, random), {.roughness = 3e-5}});
+    }
+    const std::vector<Texture> found = inverse::likeliest_textures(samples);
+    for (std::size_t cut = 0; cut < samples.size(); ++cut) {
+      const QuadraticResponse response(samples[cut].steps, found[cut]);
+      logarithm += std::log(found[cut].roughness / 0.002) / (8 * draws);
+      error += (response.slopes(samples[cut].changes) - slopes).squaredNorm();
+      claimed += response.slope_errors().squaredNorm();
+    }
+  }
+  EXPECT_NEAR(logarithm, 0, 0.5);
+  EXPECT_NEAR(std::sqrt(error / claimed), 1, 0.3);
 }
 
 TEST(Texture, NeighboursShareARippleAndFarValuesDoNot) {
@@ -145,7 +172,7 @@ TEST(Texture, NeighboursShareARippleAndFarValuesDoNot) {
 
 TEST(Texture, AsFewRunsAsSlopesTellNothingOfTheRest) {
   const Eigen::MatrixXd steps = scattered(3, 0.3, 6);
-  const Texture found = inverse::likeliest_texture(steps, 10 * changes(steps), {.roughness = 0.001});
+  const Texture found = likeliest_texture(steps, 10 * changes(steps), 0.001);
   EXPECT_EQ(found.roughness, 0.001);
   EXPECT_EQ(found.bend, 1);
 }
