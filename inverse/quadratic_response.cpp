@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+#include <span>
 
 namespace kerf::inverse {
 namespace {
@@ -109,63 +109,33 @@ double reluctance(const Doublings& more) {
   return sum;
 }
 
-double unlikeliness(const ResponseSample& sample, const Doublings& more) {
-  return QuadraticResponse(sample.steps, doubled(sample.said, more)).unlikeliness(sample.changes) + reluctance(more);
-}
-
-/// Whether the runs are more than its slopes explain.
-bool tells(const ResponseSample& sample) {
-  return sample.steps.rows() > sample.steps.cols();
-}
-
-/// How many times all are twice as rough as said, each as bent as it likes.
-int rougher_together(const std::vector<ResponseSample>& samples) {
-  constexpr int roughest = 14;
-  const auto together = [&](int rougher) {
-    double sum = reluctance({rougher, 0});
-    for (const ResponseSample& sample : samples) {
-      if (!tells(sample)) continue;
-      double least = std::numeric_limits<double>::infinity();
-      for (const int more_bent : {0, 1, 2, 4}) {
-        const double found =
-            QuadraticResponse(sample.steps, doubled(sample.said, {rougher, more_bent})).unlikeliness(sample.changes) +
-            reluctance({0, more_bent});
-        if (found > least) break;
-        least = found;
-      }
-      sum += least;
-    }
+/// The doublings, the same for all samples, that make them likeliest.
+Doublings likeliest_doublings(std::span<const ResponseSample> samples) {
+  std::vector<const ResponseSample*> telling;  // more than their slopes explain
+  for (const ResponseSample& sample : samples)
+    if (sample.steps.rows() > sample.steps.cols()) telling.push_back(&sample);
+  if (telling.empty()) return {0, 0};
+  const auto unlikeliness = [&](const Doublings& more) {
+    double sum = reluctance(more);
+    for (const ResponseSample* sample : telling)
+      sum += QuadraticResponse(sample->steps, doubled(sample->said, more)).unlikeliness(sample->changes);
     return sum;
   };
-  int best = 0;
-  double lowest = together(0);
-  for (int rougher = 1; rougher <= roughest; ++rougher) {
-    const double found = together(rougher);
-    if (found > lowest + 20) break;  // past the minimum
-    if (found >= lowest) continue;
-    lowest = found;
-    best = rougher;
-  }
-  return best;
-}
-
-Texture likeliest_alone(const ResponseSample& sample) {
-  if (!tells(sample)) return sample.said;
-  const double as_said = unlikeliness(sample, {0, 0});
+  const double as_said = unlikeliness({0, 0});
   Doublings best{0, 0};
-  double lowest = as_said;
+  double lowest = as_said - good_reason;
   // Downhill by single doublings, or over a ridge; from what was said, and from much rougher and more bent.
   constexpr std::array<Doublings, 7> moves{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {3, 0}, {1, -1}, {-1, 1}}};
   for (const Doublings start : {Doublings{0, 0}, Doublings{5, 3}}) {
     Doublings here = start;
-    double height = unlikeliness(sample, here);
+    double height = unlikeliness(here);
     for (bool falling = true; falling;) {
       falling = false;
       const Doublings from = here;
       for (const Doublings& move : moves) {
         const Doublings to{from[0] + move[0], from[1] + move[1]};
         if (to[0] < 0 || to[1] < 0) continue;
-        const double found = unlikeliness(sample, to);
+        const double found = unlikeliness(to);
         if (!(found < height - 1e-9)) continue;
         height = found;
         here = to;
@@ -176,17 +146,17 @@ Texture likeliest_alone(const ResponseSample& sample) {
     lowest = height;
     best = here;
   }
-  return lowest < as_said - good_reason ? doubled(sample.said, best) : sample.said;
+  return best;
 }
 
 }  // namespace
 
 std::vector<Texture> likeliest_textures(const std::vector<ResponseSample>& samples) {
-  const int rougher = rougher_together(samples);
+  const Doublings together = likeliest_doublings(samples);
   std::vector<Texture> textures;
   for (ResponseSample sample : samples) {
-    sample.said = doubled(sample.said, {rougher, 0});
-    textures.push_back(likeliest_alone(sample));
+    sample.said = doubled(sample.said, together);
+    textures.push_back(doubled(sample.said, likeliest_doublings({&sample, 1})));
   }
   return textures;
 }

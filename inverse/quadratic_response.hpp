@@ -61,8 +61,8 @@ struct ResponseSample {
 };
 
 /// The textures that make samples of alike quantities likeliest, with the ripples that were said (type II maximum
-/// likelihood with priors: sec. 5.4 of the same book). All may be rougher than said by one and the same factor, which
-/// they know together and not alone; beyond that each may be rougher and more bent, for good reasons.
+/// likelihood with priors: sec. 5.4 of the same book). First all get rougher and more bent than said by the same
+/// factors, which they know together and not alone, then each by its own, both for good reasons only.
 std::vector<Texture> likeliest_textures(const std::vector<ResponseSample>& samples);
 
 }  // namespace kerf::inverse
