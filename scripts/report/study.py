@@ -302,6 +302,6 @@ def draw_estimates(study):
             ax.set_title(name.replace("_", " ") + (f", {unit}" if unit else ""))
             ax.set_xlim(0.7 * min(cost for _, cost, _ in known), 2.2 * max(cost for _, cost, _ in known))
         ax.set_xlabel("core-seconds")
-        ax.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-        ax.xaxis.set_minor_formatter(NullFormatter())
+        ax.set_xticks([cost for _, cost, _ in known], [f"{cost:.3g}" for _, cost, _ in known])
+        ax.set_xticks([], minor=True)
     return fig
