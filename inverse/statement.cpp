@@ -18,7 +18,7 @@ std::string number(double value, double error = 0.0) {
   const auto exponent = [](double x) { return static_cast<int>(std::floor(std::log10(std::abs(x)))); };
   const bool known = error > 0.0 && std::isfinite(error);
   const int own = value == 0.0 ? 0 : exponent(value);
-  const int last = known ? std::min(exponent(error) - 1, own) : std::min(0, own - 2);
+  const int last = known ? std::min(exponent(error) - 1, own - 1) : std::min(0, own - 2);
   const double one = std::pow(10.0, last), rounded = last > 0 ? std::round(value / one) * one : value;
   const double magnitude = std::abs(rounded);
   if (magnitude >= 1e6 || (magnitude > 0 && magnitude < 1e-3))

@@ -4,8 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <limits>
 
 #include "inverse/left_out.hpp"
+#include "inverse/statement.hpp"
+#include "models/base/units.hpp"
 #include "tests/unit/synthetic_cut.hpp"
 
 namespace kerf {
@@ -255,6 +258,21 @@ TEST(Verify, SimulatesTheEndsOfTheIntervals) {
   }
   const auto plain = calibrate(write_job(folder, job_text, curve_text({}, depths, 0.01)), folder / "other.jsonl");
   EXPECT_EQ(outcome.runs, plain.runs + 6 * depths.size());
+}
+
+TEST(Statement, ShowsTheDigitsThatAnErrorLeaves) {
+  const double MPa = consistent_units_in("MPa");
+  EXPECT_EQ(inverse::show(1096.4 * MPa, "MPa", 78.1 * MPa), "1096 MPa");
+  EXPECT_EQ(inverse::show(15847 * MPa, "MPa", 4692 * MPa), "15800 MPa");
+  EXPECT_EQ(inverse::show(0.30821, "1", 0.0227), "0.308");
+  EXPECT_EQ(inverse::show(0.5, "1", 0.0004), "0.50000");
+  EXPECT_EQ(inverse::show(1202 * MPa, "MPa", 3190 * MPa), "1200 MPa") << "an error larger than the value";
+  EXPECT_EQ(inverse::show(10670, "1", 268000), "11000");
+  EXPECT_EQ(inverse::show(1096.4 * MPa, "MPa"), "1096 MPa");
+  EXPECT_EQ(inverse::show(0.30821, "1"), "0.308");
+  EXPECT_EQ(inverse::show(0, "1", 0.1), "0.00");
+  EXPECT_EQ(inverse::show(2.5e9, "1", 3e7), "2.500e+09");
+  EXPECT_EQ(inverse::show(1, "1", std::numeric_limits<double>::infinity()), "1.00");
 }
 
 }  // namespace
