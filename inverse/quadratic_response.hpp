@@ -23,8 +23,8 @@ struct Texture {
 class QuadraticResponse {
  public:
   static constexpr double any_slope = 30, usual_curvature = 0.4, usual_third_order = 0.4;
-  /// Of a chip that swings: changes of wood's forces over 0.15 agree with those over 0.05 to a tenth of the standard
-  /// errors that their runs state, over 0.4 to one of them.
+  /// Assumed, for all materials: between the longest difference, 0.15, over which chips mostly swing alike, and the
+  /// reach of a parabola.
   static constexpr double ripple_length = 0.3;
 
   /// `steps`: one per row, none of length zero. A quantity that is no logarithm has its texture on its own scale.

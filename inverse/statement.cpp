@@ -11,7 +11,7 @@
 namespace kerf::inverse {
 namespace {
 
-/// To the second digit of its error, so that no digit means nothing, but to one of its own at least; without an error
+/// To the second digit of its error, so that no digit means nothing, but to two of its own at least; without an error
 /// to three.
 std::string number(double value, double error = 0.0) {
   if (!std::isfinite(value)) return "unknown";

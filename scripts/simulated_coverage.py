@@ -12,6 +12,7 @@ DIR keeps every trial and every run: begun again, the script goes on where it wa
 import argparse
 import json
 import pathlib
+import statistics
 import subprocess
 import sys
 
@@ -51,18 +52,24 @@ def main():
     options = parser.parse_args()
     options.output.mkdir(parents=True, exist_ok=True)
     held, converged = dict.fromkeys(TRUTH, 0), 0
+    errors, values = {name: [] for name in TRUTH}, {name: [] for name in TRUTH}  # over the truth
     for trial in range(1, options.trials + 1):
         result = calibrate(options.kerf, options.output, options.cells, trial, options.parallel)
         converged += result["converged"]
         for name, truth in TRUTH.items():
-            lower, upper = result["parameters"][name]["interval"]
+            found = result["parameters"][name]
+            lower, upper = found["interval"]
             held[name] += lower <= truth <= upper
+            errors[name].append(found["se"] / truth)
+            values[name].append(found["value"] / truth)
         print(f"trial {trial}: {result['runs']} cuts, chi2 {result['chi2']:.1f}", *(
             f"{name} {p['value']:.4g} [{p['interval'][0]:.4g}, {p['interval'][1]:.4g}]"
             for name, p in result["parameters"].items()), file=sys.stderr, flush=True)
     print(f"{converged} of {options.trials} converged; 95 % intervals that hold the truth:")
     for name, count in held.items():
-        print(f"{name:15}{count:4} of {options.trials}")
+        print(f"{name:15}{count:4} of {options.trials}   standard error {statistics.mean(errors[name]):.2%} in the mean, "
+              f"scatter of the estimates {statistics.pstdev(values[name]):.2%}, their mean off by "
+              f"{statistics.mean(values[name]) - 1:+.2%}")
 
 
 if __name__ == "__main__":
