@@ -29,7 +29,7 @@ Fit conclude(const Job& job, const Objective& objective, SearchResult found) {
           .identifiability = {},
           .error_budget = {},
           .fitted_errors = {},
-          .at_jump = found.model ? found.model->at_jump() : CutMask(),
+          .at_jump = {},
           .resampling = {},
           .posterior = {},
           .model = {},
@@ -42,6 +42,10 @@ Fit conclude(const Job& job, const Objective& objective, SearchResult found) {
   fit.model = seen_slopes(*found.model, misfit);
   const LocalModel& model = *fit.model;
   fit.identifiability = identify(model, misfit, objective.space(), job.derived);
+  const double allowed = fit.identifiability.chi2 + fit.identifiability.allowed_rise();
+  fit.at_jump = model.at_jump([&](const Eigen::VectorXd& point) {
+    return misfit.residuals(model.predict(point), point, model.known()).chi2 <= allowed;
+  });
   add_profiles(fit.identifiability, model, misfit, objective.space(), job.derived);
   fit.error_budget = error_budget(fit.identifiability, misfit, model.known());
   fit.fitted_errors = fitted_errors(fit.identifiability, model, misfit, objective.space());
@@ -209,6 +213,9 @@ class Calibrator {
             if (!*end) continue;
             const Evaluation there = objective_.evaluate((*end)->point);
             objective_.trace("end of the interval of " + p.name, there);
+            for (std::size_t cut = 0; cut < there.usable.size(); ++cut)
+              if (there.usable[cut] && there.runs[cut].branch != model.base().runs[cut].branch)
+                result_.fit.at_jump[cut] = true;
             // A cut that fails there would lower chi^2 by being absent.
             if (both(there.usable, model.known()) == model.known())
               (*end)->simulated = misfit_.chi2(there, model.known());

@@ -26,7 +26,7 @@ struct Fit {
   Identifiability identifiability;
   std::vector<std::optional<VarianceShares>> error_budget;  ///< see error_budget()
   Observations fitted_errors;                               ///< see fitted_errors(); empty without slopes
-  CutMask at_jump;  ///< cuts within a difference step of another branch; empty without slopes
+  CutMask at_jump;  ///< cuts that a step, or parameters which the data allow, moved to another branch; or empty
   Resampling resampling;
   std::optional<Posterior> posterior;  ///< none: the job did not ask for it, or there are no slopes
   std::optional<LocalModel> model;     ///< seen_slopes() about `at`; none: the budget did not allow the differences

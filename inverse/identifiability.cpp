@@ -206,7 +206,7 @@ Identifiability identify(const LocalModel& model, const Misfit& misfit, const Pa
 
   result.covariance = covariance * result.error_scale * result.error_scale;
 
-  const double allowed = std::pow(result.quantile * result.error_scale, 2);
+  const double allowed = result.allowed_rise();
   for (Eigen::Index j = 0; j < all; ++j) {
     ParameterEstimate estimate;
     const bool is_edge = j == n;

@@ -63,6 +63,8 @@ struct Identifiability {
   Eigen::MatrixXd singular_vectors;  ///< right ones, one per column
   Eigen::MatrixXd correlation;       ///< NaN where a parameter is not seen at all
 
+  /// By how much chi^2 may rise within a 95 % interval.
+  double allowed_rise() const { return quantile * quantile * error_scale * error_scale; }
   /// A parameter or a derived quantity.
   const ParameterEstimate* find(const std::string& name) const;
 };

@@ -39,11 +39,7 @@ double model_size(const Evaluation& base, Eigen::Index cut, Eigen::Index observa
 }  // namespace
 
 LocalModel::LocalModel(Evaluation base, const OptimiserChoice& choice)
-    : base_(std::move(base)),
-      choice_(choice),
-      runs_(base_.usable.size()),
-      has_slopes_(base_.usable.size(), false),
-      at_jump_(base_.usable.size(), false) {
+    : base_(std::move(base)), choice_(choice), runs_(base_.usable.size()), has_slopes_(base_.usable.size(), false) {
   const Eigen::Index n = base_.point.size();
   told_ = Eigen::MatrixXd::Zero(base_.simulated.rows(), n);
   fresh_errors_ = Eigen::MatrixXd::Zero(base_.simulated.rows(), base_.simulated.cols());
@@ -77,12 +73,8 @@ void LocalModel::refit() {
   for (std::size_t cut = 0; cut < runs_.size(); ++cut) {
     if (!base_.usable[cut]) continue;
     std::vector<const Run*> used;
-    at_jump_[cut] = false;
     for (const Run& run : runs_[cut])
-      if (run.branch != base_.runs[cut].branch)
-        at_jump_[cut] = at_jump_[cut] || (run.point - base_.point).lpNorm<Eigen::Infinity>() <= 1.001 * choice_.step;
-      else if (run.point != base_.point)
-        used.push_back(&run);
+      if (run.branch == base_.runs[cut].branch && run.point != base_.point) used.push_back(&run);
     const auto row = static_cast<Eigen::Index>(cut);
     // What lies beyond the reach of a parabola is not heard where the runs within tell slopes as differences would.
     const auto far = std::stable_partition(used.begin(), used.end(),
@@ -325,6 +317,18 @@ void LocalModel::borrow_for(const Evaluation& other) {
   }
   base_ = other;
   fresh_ = false;
+}
+
+CutMask LocalModel::at_jump(const std::function<bool(const Eigen::VectorXd&)>& allowed) const {
+  const auto is_near = [&](const Run& run) {
+    return (run.point - base_.point).lpNorm<Eigen::Infinity>() <= 1.001 * choice_.step || allowed(run.point);
+  };
+  CutMask found(runs_.size(), false);
+  for (std::size_t cut = 0; cut < runs_.size(); ++cut)
+    if (base_.usable[cut])
+      found[cut] = std::any_of(runs_[cut].begin(), runs_[cut].end(),
+                               [&](const Run& run) { return run.branch != base_.runs[cut].branch && is_near(run); });
+  return found;
 }
 
 LocalModel LocalModel::scaled(const Eigen::MatrixXd& share) const {

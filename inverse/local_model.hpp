@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -38,8 +39,8 @@ class LocalModel {
   const Evaluation& base() const { return base_; }
   /// Cuts that the model predicts.
   CutMask known() const { return both(has_slopes_, base_.usable); }
-  /// Cuts of which a run within a step of the base landed on another branch.
-  const CutMask& at_jump() const { return at_jump_; }
+  /// Cuts of which a run within a step of the base, or at another point that is `allowed`, landed on another branch.
+  CutMask at_jump(const std::function<bool(const Eigen::VectorXd&)>& allowed) const;
 
   Observations predict(const Eigen::VectorXd& point) const;
 
@@ -137,7 +138,7 @@ class LocalModel {
   std::array<std::vector<Eigen::MatrixXd>, observable_count> rough_covariances_;  ///< of the slopes of every cut
   Eigen::MatrixXd fresh_errors_;  ///< of a difference: cuts x observables
   Eigen::MatrixXd told_;          ///< errors_if_usual() of what is heard: whether it tells a slope at all
-  CutMask has_slopes_, at_jump_;
+  CutMask has_slopes_;
   bool fresh_ = false;  ///< every difference that matters was taken at the present base
 };
 

@@ -146,7 +146,7 @@ std::string about_the_numerics(const Calibration& calibration) {
   return text;
 }
 
-/// Cuts that a small change of a parameter moves to the other branch.
+/// Cuts that a step of a parameter, or parameters that the data allow, moved to the other branch.
 std::string about_the_branches(const Job& job, const Fit& fit) {
   std::string cuts;
   for (std::size_t cut = 0; cut < fit.at_jump.size(); ++cut)
@@ -154,8 +154,9 @@ std::string about_the_branches(const Job& job, const Fit& fit) {
       cuts += fmt::format("{}{} at {} ({})", cuts.empty() ? "" : ", ", show(job.cuts[cut].depth, "mm"),
                           show(job.cuts[cut].rake, "deg"), forward::name(fit.at.runs[cut].branch));
   if (cuts.empty()) return "";
-  return " These data sit at the jump between a touching and a bending chip, where a step of a parameter changes the "
-         "branch: " +
+  return " These data sit at the jump between a touching and a bending chip: parameters within the intervals or a step "
+         "of "
+         "one change the branch of " +
          cuts + ". Slopes are those of the branch named; across the jump the intervals promise nothing.";
 }
 

@@ -23,13 +23,30 @@ TEST(LocalModel, NeverDifferencesAcrossABranch) {
   ModelledCut cut(write_job(folder), folder / "journal.jsonl", two_branches);
   const auto model = cut.about(cut.truth());
   EXPECT_EQ(inverse::count(model.known()), 4u);
-  EXPECT_EQ(inverse::count(model.at_jump()), 4u) << "every cut jumps at 61 MPa";
+  const auto nowhere = [](const Eigen::VectorXd&) { return false; };
+  EXPECT_EQ(inverse::count(model.at_jump(nowhere)), 4u) << "every cut jumps at 61 MPa";
   // The step of 4 % upwards crosses to the other branch; the slope must be that of this side, d ln F_c < d ln sigma_y.
   Eigen::VectorXd moved = cut.truth();
   moved[0] -= 0.02;
   const double change = std::log(model.predict(moved)(3, 0) / model.base().simulated(3, 0));
   EXPECT_LT(change, 0);
   EXPECT_GT(change, -0.02);
+}
+
+TEST(LocalModel, RemembersWhereOtherRunsChangedTheBranch) {
+  const TemporaryFolder folder;
+  const std::string text = std::string(job_text) + "[optimiser]\nstep = 0.01\nnoise = 1e-7\n";
+  ModelledCut cut(write_job(folder, text), folder / "journal.jsonl", two_branches);
+  auto model = cut.about(cut.truth());
+  const auto jumps = [&](bool allowed) {
+    return inverse::count(model.at_jump([&](const Eigen::VectorXd&) { return allowed; }));
+  };
+  EXPECT_EQ(jumps(true), 0u) << "60.6 MPa do not reach the jump at 61";
+  Eigen::VectorXd beyond = cut.truth();
+  beyond[0] += 0.05;
+  model.learn(cut.objective.evaluate(beyond));
+  EXPECT_EQ(jumps(true), 4u);
+  EXPECT_EQ(jumps(false), 0u) << "five steps away, where the data do not allow it";
 }
 
 TEST(LocalModel, ShrinksTheStepUntilTheBranchStays) {

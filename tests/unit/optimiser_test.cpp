@@ -12,6 +12,7 @@ namespace {
 using testing::calibrate;
 using testing::curve_text;
 using testing::job_text;
+using testing::jump_at;
 using testing::replaced;
 using testing::synthetic_cut;
 using testing::TemporaryFolder;
@@ -286,6 +287,22 @@ TEST(Calibration, SaysThatTheDataSitAtAJump) {
   EXPECT_THAT(outcome.calibration.statement, ::testing::HasSubstr("0.800 mm at 30.0 deg (touching)"));
   const auto plain = calibrate(write_job(folder), folder / "plain.jsonl");
   EXPECT_THAT(plain.calibration.statement, ::testing::Not(::testing::HasSubstr("jump")));
+}
+
+TEST(Calibration, SaysThatAJumpLiesWithinTheIntervals) {
+  // Steps of 1 % from 60 MPa do not get to the jump at 61.5; the end of the interval, 62.3, does.
+  const TemporaryFolder folder;
+  const std::string text =
+      std::string(job_text) + "[optimiser]\nstep = 0.01\nnoise = 1e-7\n[uncertainty]\nverify = true\n";
+  const auto said = [&](double jump) {
+    const auto file = folder / fmt::format("{}.jsonl", jump);
+    const auto found = calibrate(write_job(folder, text), file, jump_at(jump)).calibration;
+    EXPECT_TRUE(found.fit.converged);
+    EXPECT_NEAR(found.fit.identifiability.parameters[0].interval.upper, 62.3, 0.5);
+    return found.statement;
+  };
+  EXPECT_THAT(said(61.5), ::testing::HasSubstr("sit at the jump"));
+  EXPECT_THAT(said(70), ::testing::Not(::testing::HasSubstr("jump")));
 }
 
 }  // namespace

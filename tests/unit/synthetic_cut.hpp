@@ -53,14 +53,19 @@ inline forward::CutResult synthetic_cut(const forward::Scene& scene) {
   return result;
 }
 
-/// A cut whose force halves when the crack runs ahead of the tool, as soft materials do.
+/// A cut whose force halves from this flow stress (MPa) on, where the crack runs ahead of the tool.
+inline inverse::Simulator jump_at(double flow_stress) {
+  return [flow_stress](const forward::Scene& scene) {
+    forward::CutResult result = synthetic_cut(scene);
+    if (std::sqrt(3.0) * laws::shear_yield(scene.material) > flow_stress) {
+      result.branch = forward::Branch::bending;
+      result.F_c.value *= 0.5;
+    }
+    return result;
+  };
+}
 inline forward::CutResult two_branches(const forward::Scene& scene) {
-  forward::CutResult result = synthetic_cut(scene);
-  if (std::sqrt(3.0) * laws::shear_yield(scene.material) > 61) {
-    result.branch = forward::Branch::bending;
-    result.F_c.value *= 0.5;
-  }
-  return result;
+  return jump_at(61)(scene);
 }
 
 /// Refuses a fixed `share` of all scenes, picked by their numbers: the same scene fails every time.
