@@ -139,7 +139,7 @@ def draw_work_precision(ax, study):
         axis.set_major_formatter(number)
         axis.set_minor_formatter(NullFormatter())
     for axis, low, high in ((ax.xaxis, *ax.get_xlim()), (ax.yaxis, *ax.get_ylim())):
-        if high / low < 30:  # less than two powers of ten on the axis
+        if high / low < 100:  # at most two powers of ten on the axis
             axis.set_minor_formatter(FuncFormatter(lambda value, _: f"{value:g}" if f"{value:e}"[0] in "25" else ""))
     ax.tick_params(which="minor", labelsize=11.5, length=0, labelcolor=QUIET)
 
