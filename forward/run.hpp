@@ -90,6 +90,7 @@ struct CutResult {
   double fracture_energy = 0;        ///< booked per new area, N/mm
   double fracture_energy_ratio = 0;  ///< booked energy per new area over what a broken pair had used up
   double deepest_penetration = 0;    ///< of a crack face into the tool, in cells
+  double coarse_strain = 0;          ///< largest plastic strain of particles that have a cell of the base to themselves
   double lost_length = 0;            ///< mm of crack path that left the window with bonds that still held
   double room_ahead = 0;             ///< mm of window ahead of the foremost bond past its peak
   struct Heat {

@@ -194,6 +194,7 @@ const std::vector<std::string>& default_knobs(const Document& scene) {
                                                 "window.ahead+window.behind+window.below+window.above=x0.75,x1.5",
                                                 "resolution.cell_stretch=1,2,3",
                                                 "resolution.particles_per_cell_side=1,3",
+                                                "resolution.single_particle_below=0.5,1,2",
                                                 "steady_state.tolerance=x0.25,x4",
                                                 "steady_state.not_before=x0.5,x1.5",
                                                 "preset=draft,standard,reference"};

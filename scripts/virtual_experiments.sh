@@ -41,11 +41,12 @@ sweep plane_tip plane_breaker tool.tip_radius=0,0.12,0.24,0.48mm steady_state.no
 sweep plane_angle plane_breaker chip_breaker.angle=0,-10,-20deg steady_state.not_before=16 cut.travel=28
 sweep plane_bevel plane_breaker tool.bevel=25,35,44deg steady_state.not_before=16 cut.travel=28
 
-# What accuracy costs; the presets were chosen from the polymer's. The wood's, 20 core-minutes, is a selection of knobs.
+# What accuracy costs; the presets were chosen from the polymer's. The wood's is a selection of knobs.
 study study_polymer verification_45
 study study_wood wood_rl resolution.cells_through_chip=x0.75,x1.25 cut.speed=x2,x4 resolution.courant_number=x1.25 \
   pic_damping.rate=x0,x4 window.ahead+window.behind+window.below+window.above=x0.75 resolution.cell_stretch=3 \
-  steady_state.not_before=x0.5 preset=draft --reference resolution.cells_through_chip=x1.5
+  steady_state.not_before=x0.5 resolution.single_particle_below=0.5,1 preset=draft \
+  --reference resolution.cells_through_chip=x1.5
 
 study study_bar vibrating_bar box.cell=x2,x0.5 box.particles_per_cell_side=1,3 box.courant_number=x0.5,x1.5 \
   numerics.shape=uGIMP,linear numerics.transfer=PIC,APIC,XPIC numerics.stress_update=USF,USL,MUSL --reference box.cell=x0.25

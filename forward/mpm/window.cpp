@@ -53,10 +53,18 @@ void wrap_end(State& state, const Scene& scene) {
 void feed_column(State& state, const Scene& scene, double x) {
   const int up_cell = scene.resolution.particles_per_cell_side, along_cell = scene.particles_along_cell();
   const double gap_x = state.grid.cell_x / along_cell, gap_y = state.grid.cell_y / up_cell;
-  const int down = up_cell * static_cast<int>(std::lround(scene.base_height() * scene.resolution.cells_through_chip));
+  const double per_depth = up_cell * scene.resolution.cells_through_chip;
+  const int down = static_cast<int>(std::lround(scene.fine_base_height() * per_depth));
   const int up = up_cell * scene.resolution.cells_through_chip;
   for (int j = -down; j < up; ++j)
     for (int i = 0; i < along_cell; ++i) push(state.particles, x + gap_x * (i + 0.5), gap_y * (j + 0.5), gap_x * gap_y);
+  // Below, one particle stands between four nodes: on a row of nodes it would not feel a strain that alternates across
+  // it. The lowest, in material that is held, stands for what is left.
+  const double bottom = -scene.base_height() * scene.cut.depth, height = state.grid.cell_y;
+  for (double top = -down * gap_y; top > bottom + 0.25 * height; top -= height) {
+    const double low = std::max(top - height, bottom);
+    push(state.particles, x + 0.5 * state.grid.cell_x, 0.5 * (top + low), state.grid.cell_x * (top - low));
+  }
 
   for (int i = 0; i < scene.resolution.markers_per_cell; ++i) {
     const double at = x + state.crack.spacing * (i + 0.5);

@@ -32,6 +32,9 @@ void judge_specimen(const CutResult& result, Refuse&& refuse) {
                     100 * difference / sum));
 }
 
+// One particle in a cell is for material that stays elastic.
+constexpr double largest_coarse_strain = 0.01;
+
 }  // namespace
 
 void judge(CutResult& result, const Scene& scene) {
@@ -98,6 +101,11 @@ void judge(CutResult& result, const Scene& scene) {
           "nearer to the shear yield stress",
           100 * share));
   }
+  if (!(result.coarse_strain < largest_coarse_strain))
+    refuse(fmt::format(
+        "the base flows where a cell holds one particle: plastic strains there reach {:.3g} (allowed {:g}): "
+        "raise resolution.single_particle_below",
+        result.coarse_strain, largest_coarse_strain));
   if (!(result.sliding_share > 0.98))
     refuse(
         fmt::format("the chip sticks: the shear force on the rake face is {:.3f} of its slip limit (allowed from 0.98)",

@@ -46,6 +46,7 @@ std::vector<std::pair<const char*, double>> geometry(const Scene& s) {
           {"window.above", s.window.above},
           {"resolution.cells_through_chip", s.resolution.cells_through_chip},
           {"resolution.particles_per_cell_side", s.resolution.particles_per_cell_side},
+          {"resolution.single_particle_below", s.fine_base_height()},
           {"resolution.markers_per_cell", s.resolution.markers_per_cell},
           {"resolution.cell_stretch", s.resolution.cell_stretch}};
 }

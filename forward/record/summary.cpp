@@ -172,6 +172,17 @@ CutResult::Heat heat_of(const State& state, const Scene& scene) {
   return heat;
 }
 
+/// Largest plastic strain of the particles that have a cell of the base to themselves.
+double coarse_strain(const State& state, const Scene& scene) {
+  const Particles& p = state.particles;
+  const double shared =
+      scene.cell() * scene.cell_length() / (scene.particles_along_cell() * scene.resolution.particles_per_cell_side);
+  double largest = 0.0;
+  for (std::size_t i = 0; i < p.begin[above]; ++i)
+    if (p.volume[i] > 1.5 * shared) largest = std::max(largest, p.plastic_strain[i]);
+  return largest;
+}
+
 }  // namespace
 
 bool well_enough_known(const std::vector<ForceSample>& history, const Scene& scene) {
@@ -219,6 +230,7 @@ void summarise(CutResult& result, const Recorder& recorder, const State& state, 
   result.crack_lead = mean(&ForceSample::crack_lead);
   result.softening_lead = mean(&ForceSample::softening_lead);
   result.deepest_penetration = mean(&ForceSample::penetration).value / scene.cell();
+  if (scene.fine_base_height() < scene.base_height()) result.coarse_strain = coarse_strain(state, scene);
   // The chip reaches the place where it is measured later than the force settles: it has a start of its own.
   const std::vector<double> ratio = series(recorder.chip(), &ChipShape::ratio);
   std::size_t grown = from;

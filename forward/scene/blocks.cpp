@@ -189,6 +189,11 @@ std::vector<Block> declare() {
             number("particles_per_cell_side", "1", 1, 4, "particles along each side of a cell")
                 .in_whole_numbers()
                 .or_else("2"),
+            number(
+                "single_particle_below", "1", 0.5, 1e2,
+                "depths of cut under the crack plane from which on a cell of the base holds one particle, for material "
+                "that stays elastic; a specimen and a log have no base")
+                .or_else("100"),
             number("markers_per_cell", "1", 1, 32, "crack-face markers along a cell").in_whole_numbers().or_else("8"),
             number("courant_number", "1", 0.01, 0.9, "time step in transits of an elastic wave through a cell")
                 .or_else("0.6"),

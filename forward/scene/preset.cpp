@@ -18,6 +18,7 @@ const std::vector<PresetKnob> knobs{
     // path                              draft   standard  reference
     {"resolution.cells_through_chip", {"4", "8", "10"}},
     {"resolution.courant_number", {"0.6", "0.75", "0.6"}},
+    {"resolution.single_particle_below", {"1", "1", "100"}},
     {"steady_state.tolerance", {"0.01", "0.005", "0.002"}},
 };
 

@@ -155,6 +155,7 @@ Scene read_scene(const Document& document) {
                              .markers_per_cell = whole_number(resolution, "markers_per_cell"),
                              .courant_number = resolution.number("courant_number"),
                              .cell_stretch = resolution.number("cell_stretch"),
+                             .single_particle_below = resolution.number("single_particle_below"),
                              .contact_stiffness = resolution.number("contact_stiffness")},
               .steady_state = {.tolerance = steady.number("tolerance"), .not_before = steady.number("not_before")}};
   const auto block = [&](const char* path) { return contents.has(path) ? &contents.at(path) : nullptr; };

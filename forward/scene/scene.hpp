@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
@@ -146,7 +148,8 @@ struct Window {
 struct Resolution {
   int cells_through_chip, particles_per_cell_side, markers_per_cell;
   double courant_number;
-  double cell_stretch = 1;       ///< length of a cell along the cut over its height
+  double cell_stretch = 1;             ///< length of a cell along the cut over its height
+  double single_particle_below = 100;  ///< depths of cut under the crack plane; a cell of the base holds one from there
   double contact_stiffness = 1;  ///< of the contact penalties, in multiples of twice the plane-strain modulus per cell
 };
 
@@ -182,6 +185,12 @@ struct Scene {
   double cell_length() const { return resolution.cell_stretch * cell(); }
   /// Height of the material below the crack plane, in depths.
   double base_height() const { return grips ? grips->lower_arm / cut.depth : window.below; }
+  /// Height of the material below the crack plane that has all its particles, in depths: up to a row of nodes.
+  double fine_base_height() const {
+    if (grips || log) return base_height();
+    const double cells = std::floor(resolution.single_particle_below * resolution.cells_through_chip) + 0.5;
+    return std::min(cells / resolution.cells_through_chip, base_height());
+  }
   double marker_spacing() const { return cell_length() / resolution.markers_per_cell; }
   int particles_along_cell() const {
     return resolution.particles_per_cell_side + (resolution.cell_stretch > 2.0 ? 1 : 0);

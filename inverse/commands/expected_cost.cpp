@@ -48,11 +48,13 @@ ExpectedCost expected_cost(const Scene& scene, const State& state) {
   };
   // Behind the tool the window fills with the base, and above it with the chip, taken to be as thick as the layer.
   const auto window = scene.window;
-  const double laid = window.ahead * (scene.base_height() + 1.0);
+  const int per_cell = scene.particles_along_cell() * scene.resolution.particles_per_cell_side;
+  const double fine = scene.fine_base_height(), base = fine + (scene.base_height() - fine) / per_cell;
+  const double laid = window.ahead * (base + 1.0);
   const auto particles_until = [&](double depths) {
-    const double more = scene.grips || scene.log ? 0.0
-                                                 : mean_of_filling(depths, window.behind) * window.below +
-                                                       mean_of_filling(depths, window.above);
+    const double more = scene.grips || scene.log
+                            ? 0.0
+                            : mean_of_filling(depths, window.behind) * base + mean_of_filling(depths, window.above);
     return static_cast<double>(state.particles.begin[2]) * (1.0 + more / laid);
   };
   const double least = std::min(scene.steady_state.not_before, scene.cut.travel), most = scene.cut.travel;

@@ -18,6 +18,7 @@ NAMES = {"resolution.cells_through_chip": "cells through the chip", "cut.speed":
          "resolution.courant_number": "time step (CFL)", "pic_damping.rate": "PIC damping", "window.ahead": "window",
          "resolution.cell_stretch": "cell stretch", "resolution.particles_per_cell_side": "particles per cell side",
          "steady_state.tolerance": "tolerance of F_c", "steady_state.not_before": "least travel",
+         "resolution.single_particle_below": "one particle a cell below",
          "preset": "preset", "box.cell": "cell", "box.particles_per_cell_side": "particles per cell side",
          "box.courant_number": "time step (CFL)", "numerics.shape": "shape functions", "numerics.transfer": "transfer",
          "numerics.stress_update": "stress update"}

@@ -178,6 +178,31 @@ TEST(Cut, AWornEdgePressesOnTheBaseAndASharpOneDoesNot) {
   EXPECT_NE(worn.refusals.front().find("sharp tool"), std::string::npos);
 }
 
+/// The price of one particle in a cell of the base: an eighth of a standard error, for four tenths of the time.
+TEST(Cut, OneParticleInACellOfTheBaseIsEnough) {
+  const CutResult all = run(shipped("verification_45"));
+  CutResult fewer = run(shipped("verification_45", {{"resolution.single_particle_below", 1}}));
+  expect_accepted(fewer);
+  EXPECT_NEAR(fewer.F_c.value, all.F_c.value, 0.0005 * all.F_c.value);
+  EXPECT_NEAR(fewer.ledger.residue(), all.ledger.residue(), 0.001 * all.ledger.tool_work);
+  EXPECT_LT(static_cast<double>(fewer.cost.particle_steps), 0.6 * static_cast<double>(all.cost.particle_steps));
+  EXPECT_EQ(fewer.coarse_strain, 0.0);
+  EXPECT_EQ(all.coarse_strain, 0.0);
+}
+
+/// A blunt edge that the base flows under: where that reaches cells of one particle, the run says so.
+TEST(Cut, RefusesACoarseBaseThatFlows) {
+  Scene scene =
+      shipped("verification_45",
+              {{"resolution.cells_through_chip", 6}, {"resolution.single_particle_below", 0.5}, {"cut.travel", 6}});
+  scene.edge_contact = EdgeContact{.press_in = 0.2 * 0.5, .edge_radius = 0.5, .friction = 0.0};
+  const CutResult result = run(scene);
+  EXPECT_GT(result.coarse_strain, 0.01);
+  EXPECT_TRUE(std::any_of(result.refusals.begin(), result.refusals.end(), [](const std::string& reason) {
+    return reason.find("single_particle_below") != std::string::npos;
+  }));
+}
+
 /// The lower face rises ahead of the tip by less than a lead-in does, and without friction nothing pushes it up.
 TEST(Cut, ALeadInBeforeASharpTipCarriesNothing) {
   Scene scene =

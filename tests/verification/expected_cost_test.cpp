@@ -17,7 +17,7 @@ TEST(ExpectedCost, OfWoodIsWhatTheCutThenCosts) {
   std::string text = content_of(std::string(KERF_SOURCE_DIR) + "/data/scenes/wood_rl.toml");
   text = testing::replaced(text, "travel = 50", "travel = 20");
   text = testing::replaced(text, "not_before = 30", "not_before = 20");
-  text = testing::replaced(text, "cells_through_chip = 4", "cells_through_chip = 3");
+  text = testing::replaced(text, "cells_through_chip = 4", "cells_through_chip = 3\nsingle_particle_below = 1");
   std::ofstream(scene) << text;
   const std::string file = " '" + scene.string() + "' --json";
   const auto expected = nlohmann::json::parse(run_kerf("explain" + file, folder.path()).out).at("expected");
