@@ -90,8 +90,12 @@ class Calibrator {
     SearchResult found = find_optimiser(job_.optimiser.method).search(objective_, first);
     objective_.limit(all);
     complete_slopes(found);
-    const std::optional<LocalModel> model = found.model;
-    result_.fit = conclude(job_, objective_, std::move(found));
+    result_.fit = conclude(job_, objective_, found);
+    if (found.model && job_.verify) {
+      learn_ends(*found.model);
+      result_.fit = conclude(job_, objective_, found);
+    }
+    const std::optional<LocalModel> model = std::move(found.model);
     if (model && job_.edge_force && job_.edge_force->compare) compare(*model);
     if (result_.fit.model) result_.numerics = check_numerics(job_, objective_, *result_.fit.model);
     if (model && job_.verify) verify(*model);
@@ -201,6 +205,36 @@ class Calibrator {
     for (std::vector<ParameterEstimate>* all : {&known.parameters, &known.derived})
       for (ParameterEstimate& p : *all)
         p.verdict = judge(p.value, p.standard_error, over_all_assumptions(result_, p.name), p.bounds);
+  }
+
+  /// Simulates the ends of the intervals once, no farther away than the model reaches, and lets the model know: over
+  /// steps as long as the data leave a parameter uncertain, a slope stands out of the roughness that blurs it over a
+  /// difference step. Where the data set no end, the parameter alone takes the longest step.
+  void learn_ends(LocalModel& model) {
+    constexpr double longest = 0.9 * LocalModel::reach;
+    const Eigen::VectorXd& base = model.base().point;
+    const std::vector<ParameterEstimate>& parameters = result_.fit.identifiability.parameters;
+    std::vector<std::pair<std::string, Eigen::VectorXd>> ends;
+    for (std::size_t k = 0; k < parameters.size(); ++k)
+      for (const bool upper : {false, true}) {
+        const std::optional<ProfileEnd>& end = upper ? parameters[k].upper_end : parameters[k].lower_end;
+        const auto j = static_cast<Eigen::Index>(k);
+        if (!end && j >= base.size()) continue;  // the edge force needs no slope
+        Eigen::VectorXd step =
+            end ? Eigen::VectorXd(end->point - base)
+                : Eigen::VectorXd(Eigen::VectorXd::Unit(base.size(), j) * (upper ? 1 : -1) * longest);
+        if (step.norm() > longest) step *= longest / step.norm();
+        ends.emplace_back(parameters[k].name, (base + step).cwiseMax(space_.lower()).cwiseMin(space_.upper()));
+      }
+    try {
+      for (const auto& [name, point] : ends) {
+        const Evaluation there = objective_.evaluate(point);
+        objective_.trace("towards the end of the interval of " + name, there);
+        model.learn(there);
+      }
+    } catch (const BudgetSpent&) {
+      // What was learnt counts; verify() says which ends it did not get to.
+    }
   }
 
   /// Simulates every end of an interval that the budget still covers, over the cuts that the model knows.

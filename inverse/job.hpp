@@ -164,7 +164,7 @@ struct Job {
   OptimiserChoice optimiser;
   Coarse coarse;
   std::vector<NumericsChoice> numerics;
-  bool verify = false;      ///< simulate the ends of the 95 % intervals where the budget covers them
+  bool verify = false;      ///< simulate the ends of the 95 % intervals where the budget covers them, and learn
   int posterior_moves = 0;  ///< of every walker in the posterior; 0: no sampling
   double discrepancy = 0;   ///< relative error that the model is granted in every observable
 

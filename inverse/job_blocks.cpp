@@ -77,7 +77,10 @@ std::vector<Block> declare() {
        .variant = "",
        .meaning = "what is spent on intervals beyond the slopes",
        .parameters =
-           {flag("verify", "simulate the ends of the 95 % intervals where max_runs covers them").or_else("false"),
+           {flag("verify",
+                 "simulate the ends of the 95 % intervals where max_runs covers them, once for the slopes towards "
+                 "them and once for their chi2")
+                .or_else("false"),
             number(
                 "posterior_moves", "1", 0, 1e6,
                 "moves of each walker that samples the posterior density, for a second opinion on every interval; 0: "

@@ -19,6 +19,8 @@ namespace kerf::inverse {
 /// would turn back.
 class LocalModel {
  public:
+  static constexpr double reach = 0.5;  ///< in search coordinates
+
   /// Nothing but the base; every slope is unsure.
   LocalModel(Evaluation base, const OptimiserChoice& choice);
   /// With differences about it.
@@ -77,8 +79,6 @@ class LocalModel {
   static bool branches_differ(const Evaluation& a, const Evaluation& b);
 
  private:
-  static constexpr double reach = 0.5;  ///< in search coordinates
-
   using SlopeMask = Eigen::Matrix<bool, Eigen::Dynamic, Eigen::Dynamic>;
 
   struct Run {

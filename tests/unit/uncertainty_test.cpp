@@ -9,6 +9,7 @@
 #include "inverse/left_out.hpp"
 #include "inverse/statement.hpp"
 #include "models/base/units.hpp"
+#include "tests/unit/modelled_cut.hpp"
 #include "tests/unit/synthetic_cut.hpp"
 
 namespace kerf {
@@ -257,7 +258,35 @@ TEST(Verify, SimulatesTheEndsOfTheIntervals) {
     EXPECT_NEAR(*p.lower_end->simulated - known.chi2, 3.84, 0.6) << p.name;
   }
   const auto plain = calibrate(write_job(folder, job_text, curve_text({}, depths, 0.01)), folder / "other.jsonl");
-  EXPECT_EQ(outcome.runs, plain.runs + 6 * depths.size());
+  EXPECT_EQ(outcome.runs, plain.runs + 12 * depths.size()) << "once for the slopes, once for chi^2";
+}
+
+/// Over steps of a tenth of its error a parameter's slope drowns in the roughness of the simulation; over steps as long
+/// as its interval it does not.
+TEST(Verify, TheEndsTeachTheSlopes) {
+  const TemporaryFolder folder;
+  const std::string text = std::string(job_text) + "[optimiser]\nstep = 0.02\nnoise = 0.002\n";
+  double with = 0, without = 0;
+  for (int seed = 1; seed <= 6; ++seed) {
+    const auto rough = [seed](const forward::Scene& scene) {
+      forward::CutResult result = testing::synthetic_cut(scene);
+      for (Estimate* force : {&result.F_c, &result.F_t, &result.chip_ratio})
+        force->value *= 1 + 0.002 * std::sqrt(2.0) * std::sin(1e7 * seed * force->value);
+      return result;
+    };
+    for (const bool verify : {true, false}) {
+      const std::string job = text + (verify ? "[uncertainty]\nverify = true\n" : "");
+      const auto found = calibrate(write_job(folder, job, curve_text({}, depths, 0.04)),
+                                   folder / fmt::format("{}{}.jsonl", seed, verify), rough)
+                             .calibration;
+      const inverse::LocalModel& model = *found.fit.model;
+      testing::ModelledCut smooth(write_job(folder, std::string(job_text) + "[optimiser]\nstep = 1e-4\nnoise = 1e-9\n"),
+                                  folder / fmt::format("{}{}_smooth.jsonl", seed, verify));
+      const inverse::LocalModel exact = smooth.about(model.base().point);
+      (verify ? with : without) += (model.slopes(0).col(1) - exact.slopes(0).col(1)).squaredNorm();
+    }
+  }
+  EXPECT_LT(std::sqrt(with), 0.5 * std::sqrt(without)) << "toughness, F_c";
 }
 
 TEST(Statement, ShowsTheDigitsThatAnErrorLeaves) {
