@@ -1,11 +1,10 @@
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "forward/scene/scene.hpp"
+#include "inverse/closed_form_cut.hpp"
 #include "inverse/fidelity_correction.hpp"
 #include "inverse/optimiser.hpp"
-#include "models/chip/shear_minimised.hpp"
 
 namespace kerf::inverse {
 namespace {
@@ -14,23 +13,8 @@ constexpr int most_corrections = 8;
 // A coarse step that gains less than half a standard error is left to the next correction.
 constexpr double coarse_tolerance = 0.25;
 
-/// Williams' minimised shear plane in the place of a simulation; refused where it has no solution or no such material.
-RunRecord shear_plane(const Document& document) {
-  const forward::Scene scene = forward::read_scene(document);
-  const double yield_stress = std::sqrt(3.0) * laws::shear_yield(scene.material);
-  if (!std::isfinite(yield_stress) || !scene.cohesive.mode_I)
-    return refused("the closed form wants a yield stress and a toughness");
-  const double toughness = scene.cohesive.mode_I->toughness(), depth = scene.cut.depth, rake = scene.tool.rake;
-  const auto plane = chip::shear_minimised(depth, rake, yield_stress, toughness,
-                                           scene.friction ? scene.friction->coefficient : 0.0, 0.0);
-  if (plane.radicand < 0) return refused("the closed form has no solution here");
-  RunRecord record;
-  record.F_c.value = plane.forces.F_c;
-  record.F_t.value = plane.forces.F_t;
-  const double cot_phi = (plane.forces.F_c - toughness) / (yield_stress * depth);  // Eq. (4) of shear_minimised.hpp
-  record.chip_ratio.value = std::cos(rake) * cot_phi + std::sin(rake);
-  record.accepted = record.steady = true;
-  return record;
+RunRecord shear_plane(const Document& scene) {
+  return summarise(closed_form_cut(forward::read_scene(scene)));
 }
 
 /// The job with its coarse scene, and its own objective on the same database.

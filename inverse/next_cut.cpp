@@ -6,6 +6,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "models/base/error.hpp"
@@ -36,7 +37,7 @@ double typical_error(const Job& job, std::size_t k) {
 std::vector<MeasuredCut> candidate_cuts(const Job& job) {
   constexpr int depths = 7;
   const double step = 10 * consistent_units_in("deg");
-  double shallowest = job.cuts.front().depth, deepest = shallowest;
+  double shallowest = std::numeric_limits<double>::infinity(), deepest = 0;
   std::set<double> rakes;
   for (const MeasuredCut& cut : job.cuts) {
     if (cut.extension) continue;
@@ -44,6 +45,8 @@ std::vector<MeasuredCut> candidate_cuts(const Job& job) {
     deepest = std::max(deepest, cut.depth);
     rakes.insert(cut.rake);
   }
+  if (rakes.empty())
+    throw InputError(job.title + ": this job has no cuts, only R-curves; there is no next cut to them");
   rakes.insert({*rakes.begin() - step, *rakes.rbegin() + step});
   std::vector<MeasuredCut> cuts;
   for (const double rake : rakes)

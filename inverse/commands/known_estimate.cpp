@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "inverse/calibration.hpp"
 #include "inverse/child_runs.hpp"
 #include "inverse/closed_form_cut.hpp"
 #include "inverse/folder.hpp"
+#include "inverse/optimiser.hpp"
 #include "inverse/seen_slopes.hpp"
 #include "inverse/start.hpp"
 #include "models/base/error.hpp"
@@ -55,6 +57,33 @@ void use_slopes(const Job& job, RunDatabase& database, const Eigen::VectorXd& po
        }});
 }
 
+/// Where the closed form in the place of the simulation fits the job's cuts best. Throws InputError where it does not
+/// describe them at all.
+Eigen::VectorXd closed_form_fit(const Job& job, RunDatabase& database, const std::string& where) {
+  constexpr double most = 25;  // chi^2 per degree of freedom: residuals of five standard errors
+  const std::string way_out = "; give the folder of a finished calibration, whose simulations take its place";
+  if (std::any_of(job.cuts.begin(), job.cuts.end(), [](const MeasuredCut& cut) { return cut.extension.has_value(); }))
+    throw InputError(where + ": the closed form knows no R-curve" + way_out);
+  const ParameterSpace space(job);
+  Misfit misfit(job, space);
+  Objective objective(job, space, misfit, database, no_limit);
+  const Evaluation start = objective.evaluate(find_start(job, space).point);
+  if (count(start.usable) == 0)
+    throw InputError(fmt::format("{}: {}{}", where,
+                                 start.runs.front().refusals.empty() ? "the closed form has no forces here"
+                                                                     : start.runs.front().refusals.front(),
+                                 way_out));
+  const SearchResult found = gauss_newton(objective, start);
+  const Residuals left = misfit.residuals(found.best);
+  const int freedom = left.compared - static_cast<int>(space.dimension()) - (job.edge_force ? 1 : 0);
+  if (left.chi2 > most * std::max(1, freedom))
+    throw InputError(
+        fmt::format("{}: the closed form does not describe these cuts (chi2 = {:.3g} on {} degrees of "
+                    "freedom){}",
+                    where, left.chi2, freedom, way_out));
+  return found.best.point;
+}
+
 }  // namespace
 
 void with_known_estimate(const fs::path& job_or_folder, const std::string& code,
@@ -85,7 +114,7 @@ void with_known_estimate(const fs::path& job_or_folder, const std::string& code,
   const ScratchFile scratch;
   Journal journal(scratch.path());
   RunDatabase database(journal, code, closed_form_cut, 1);
-  use_slopes(job, database, find_start(job, ParameterSpace(job)).point, {}, job_or_folder.string(), use);
+  use_slopes(job, database, closed_form_fit(job, database, job_or_folder.string()), {}, job_or_folder.string(), use);
 }
 
 }  // namespace kerf::commands

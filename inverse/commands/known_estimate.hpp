@@ -19,7 +19,7 @@ struct KnownEstimate {
 
 /// A folder of a finished calibration: its simulations, replayed from its journal. A job file: the closed form in the
 /// place of the simulation, about the closed form's own fit; nothing is simulated. Throws InputError when the folder's
-/// calibration is not finished.
+/// calibration is not finished, or the closed form does not describe the job's cuts.
 void with_known_estimate(const std::filesystem::path& job_or_folder, const std::string& code,
                          const std::function<void(const KnownEstimate&)>& use);
 
