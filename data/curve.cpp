@@ -270,7 +270,7 @@ class CurveReader {
     point.speed = optional_number(row, "speed");
     point.tool_radius = optional_number(row, "tool_radius");
     point.F_c = {number(row, "Fc"), optional_number(row, "Fc_sd"), repeats};
-    point.F_t = {number(row, "Ft"), optional_number(row, "Ft_sd"), repeats};
+    point.F_t = optional_measured(row, "Ft", repeats);
     point.chip_ratio = optional_measured(row, "chip_ratio", repeats);
     point.curl_radius = optional_measured(row, "curl_radius", repeats);
     if (point.curl_radius && point.curl_radius->value == 0)
@@ -328,7 +328,8 @@ const Block& curve_columns() {
           {kerf::number("depth", "mm", 1e-6, 100, "depth of cut (uncut chip thickness)"),
            kerf::number("Fc", "N/mm", 0, 1e5, "cutting force, along the tool's motion; N or N per width"),
            kerf::number("Ft", "N/mm", -1e5, 1e5,
-                        "transverse force, positive when the tool is pushed away from the work"),
+                        "transverse force, positive when the tool is pushed away from the work")
+               .if_given(),
            kerf::number("Fc_sd", "N/mm", 1e-9, 1e5, "standard deviation of Fc between repeats").if_given(),
            kerf::number("Ft_sd", "N/mm", 1e-9, 1e5, "standard deviation of Ft between repeats").if_given(),
            kerf::number("chip_ratio", "1", 0.05, 50, "chip thickness / depth of cut").if_given(),

@@ -22,9 +22,9 @@ struct Measured {
 
 /// One row of a measured curve.
 struct CurvePoint {
-  double depth = 0.0;  ///< depth of cut, mm
-  Measured F_c;        ///< cutting force per unit width, N/mm
-  Measured F_t;        ///< transverse force per unit width, N/mm; positive: tool pushed away from the work
+  double depth = 0.0;           ///< depth of cut, mm
+  Measured F_c;                 ///< cutting force per unit width, N/mm
+  std::optional<Measured> F_t;  ///< transverse force per unit width, N/mm; positive: tool pushed away from the work
   std::optional<Measured> chip_ratio;   ///< chip thickness / depth of cut
   std::optional<Measured> curl_radius;  ///< of the chip, mm; positive curls away from the tool
   double rake = 0.0;                    ///< rad

@@ -46,7 +46,7 @@ TEST(Curve, ReadsTheTitaniumSetsInConsistentUnits) {
   EXPECT_DOUBLE_EQ(first.F_c.value, 97.16);
   EXPECT_DOUBLE_EQ(*first.F_c.sd, 13.37 / 2) << "the article gives two standard deviations";
   EXPECT_DOUBLE_EQ(*first.F_c.standard_error(), 13.37 / 2 / std::sqrt(3.0));
-  EXPECT_DOUBLE_EQ(first.F_t.value, 46.58);
+  EXPECT_DOUBLE_EQ(first.F_t->value, 46.58);
   EXPECT_DOUBLE_EQ(first.chip_ratio->value, 1.767);
   EXPECT_DOUBLE_EQ(*first.chip_ratio->sd, 0.072);
   EXPECT_DOUBLE_EQ(first.rake, 15 * std::numbers::pi / 180);
@@ -118,7 +118,7 @@ TEST(Curve, MessyFilesAreReadAsWhatTheyMean) {
     for (std::size_t i = 0; i < 2; ++i) {
       EXPECT_DOUBLE_EQ(curve.points[i].depth, expected.points[i].depth) << file;
       EXPECT_DOUBLE_EQ(curve.points[i].F_c.value, expected.points[i].F_c.value) << file;
-      EXPECT_DOUBLE_EQ(curve.points[i].F_t.value, expected.points[i].F_t.value) << file;
+      EXPECT_DOUBLE_EQ(curve.points[i].F_t->value, expected.points[i].F_t->value) << file;
       EXPECT_DOUBLE_EQ(curve.points[i].rake, expected.points[i].rake) << file;
     }
   }
@@ -142,13 +142,21 @@ TEST(Curve, AbsentValuesAreAbsentAndReplicatesAreKept) {
   EXPECT_EQ(curve.points[0].F_c.standard_error(), 0.5);
   EXPECT_EQ(curve.points[1].F_c.sd, std::nullopt);
   EXPECT_EQ(curve.points[1].F_c.standard_error(), std::nullopt);
-  EXPECT_EQ(curve.points[1].F_t.value, -1.0) << "a typographic minus";
+  EXPECT_EQ(curve.points[1].F_t->value, -1.0) << "a typographic minus";
   EXPECT_FALSE(curve.points[1].chip_ratio.has_value());
   EXPECT_EQ(curve.points[2].chip_ratio->sd, std::nullopt);
   EXPECT_EQ(curve.points[0].replicate, 1);
   EXPECT_EQ(curve.points[1].replicate, 2);
   EXPECT_EQ(curve.points[2].replicate, 1) << "another specimen";
   EXPECT_EQ(curve.points[0].width, std::nullopt);
+}
+
+TEST(Curve, TheTransverseForceMayNotHaveBeenMeasured) {
+  const Curve alone = parse_curve("#: rake = 15 deg\ndepth[um],Fc[N/mm]\n40,3\n", "c.csv");
+  EXPECT_FALSE(alone.points.front().F_t);
+  const Curve partly = parse_curve("#: rake = 15 deg\ndepth[um],Fc[N/mm],Ft[N/mm]\n40,3,\n50,4,2\n", "c.csv");
+  EXPECT_FALSE(partly.points[0].F_t);
+  EXPECT_DOUBLE_EQ(partly.points[1].F_t->value, 2);
 }
 
 TEST(Curve, RefusalsSayWhereWhatAndWhatIsAllowed) {
@@ -198,7 +206,7 @@ TEST(Curve, RefusalsSayWhereWhatAndWhatIsAllowed) {
       {header + "40,abc,1\n", "3:4", {"Fc[N/mm] = abc", "does not begin with a number"}},
       {header + "40,inf,1\n", "3:4", {"not a finite number"}},
       {header + "40,,1\n", "3:4", {"Fc[N/mm] is empty; a number belongs here"}},
-      {header + "40,3,nan\n", "3:6", {"Ft[N/mm] = nan says that nothing was measured"}},
+      {header + "40,nan,3\n", "3:4", {"Fc[N/mm] = nan says that nothing was measured"}},
       {header + ",3,1\n", "3:1", {"depth[um] is empty"}},
       {header + "0,3,1\n", "3:1", {"depth[um] = 0 is below 1e-06 mm"}},
       {header + "-40,3,1\n", "3:1", {"is below"}},
@@ -255,7 +263,7 @@ TEST(Curve, NumbersSurviveEverySeparatorAndDecimalMark) {
                                              spelled(h / 100), spelled(F));
         const Curve curve = parse_curve(file, "c");
         ASSERT_EQ(curve.points.front().depth, std::stod(std::to_string(h / 100)));
-        ASSERT_EQ(curve.points.front().F_t.value, std::stod(std::to_string(F)));
+        ASSERT_EQ(curve.points.front().F_t->value, std::stod(std::to_string(F)));
       }
   }
 }
@@ -317,7 +325,7 @@ TEST(Curve, AnyBytesAreReadOrRefusedWithAPlace) {
     }
     try {
       for (const CurvePoint& point : parse_curve(text, "f").points)
-        ASSERT_TRUE(point.depth > 0 && std::isfinite(point.F_c.value) && std::isfinite(point.F_t.value)) << text;
+        ASSERT_TRUE(point.depth > 0 && std::isfinite(point.F_c.value) && std::isfinite(point.F_t->value)) << text;
       ++read;
     } catch (const InputError& error) {
       ASSERT_THAT(error.what(), MatchesRegex("f:[0-9]+:[0-9]+: .*")) << text;
