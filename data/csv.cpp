@@ -181,7 +181,9 @@ Csv split_csv(std::string_view text, const std::string& name) {
     if (!csv.header.empty() && cells.size() != csv.header.size())
       refuse(name, number, cells.back().column,
              fmt::format("this row has {} cells where the header names {} columns{}", cells.size(), csv.header.size(),
-                         csv.separator == ',' ? "; decimal commas need semicolons between the cells" : ""));
+                         csv.separator == ',' && cells.size() > csv.header.size()
+                             ? "; decimal commas need semicolons between the cells"
+                             : ""));
     if (csv.header.empty())
       csv.header = std::move(cells);
     else

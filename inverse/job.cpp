@@ -187,17 +187,33 @@ void add_cuts(Job& job, const Values& values, const data::Curve& curve) {
                                  values.where("file"), values.text("file")));
 }
 
-InputFile load(const std::string& name, const Locate& locate) {
-  return {.name = name, .content = read_file(locate(name))};
+/// The file that a key names. Throws InputError with the key's place.
+InputFile load(const Values& values, const char* key, const Locate& locate) {
+  const std::string& name = values.text(key);
+  try {
+    return {.name = name, .content = read_file(locate(name))};
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", values.where(key), error.what()));
+  }
+}
+
+/// The key `changes` of a table, if it has one. What is wrong there is bad data here, no misused command.
+void apply_changes(const Values& values, Document& scene) {
+  if (!values.has("changes")) return;
+  try {
+    apply_settings(values.list("changes"), scene, forward::scene_blocks(), values.where("changes"));
+  } catch (const InputError& error) {
+    throw InputError(error.what());
+  }
 }
 
 /// The points of an R-curve; one simulated pull of the specimen answers for all of them.
 void add_resistance(Job& job, const Values& top, const Values& values, const Locate& locate) {
   MeasuredCurve& curve = job.curves.back();
-  curve.specimen_file = load(values.text("scene"), locate);
+  curve.specimen_file = load(values, "scene", locate);
   curve.specimen = Document::parse(curve.specimen_file->content, locate(curve.specimen_file->name).string());
   if (top.has("preset")) forward::impose_preset(*curve.specimen, top.text("preset"), top.where("preset"));
-  apply_settings(curve.changes, *curve.specimen, forward::scene_blocks(), values.where("changes"));
+  apply_changes(values, *curve.specimen);
   const forward::Scene scene = forward::read_scene(*curve.specimen);
   if (!scene.grips)
     throw InputError(fmt::format("{}: [[curve]] scene = \"{}\" has no [grips]: only a specimen shows an R-curve",
@@ -261,7 +277,7 @@ Coarse read_coarse(const Contents& contents, const Document& scene) {
     return coarse;
   }
   const Values& values = contents.at("coarse");
-  apply_settings(values.list("changes"), coarse.scene, blocks, values.where("changes"));
+  apply_changes(values, coarse.scene);
   forward::read_scene(coarse.scene);
   return coarse;
 }
@@ -274,7 +290,7 @@ std::vector<NumericsChoice> read_numerics(const Contents& contents, const Docume
       throw InputError(
           fmt::format("{}: the name \"{}\" is taken; choose another one", values.where("name"), values.text("name")));
     all.push_back({.name = values.text("name"), .scene = scene});
-    apply_settings(values.list("changes"), all.back().scene, forward::scene_blocks(), values.where("changes"));
+    apply_changes(values, all.back().scene);
     forward::read_scene(all.back().scene);
   }
   return all;
@@ -316,7 +332,7 @@ Job read_job(const fs::path& file, const std::string& name, const Locate& locate
                      ": is a scene; a job names one (scene = \"...\"), curves and what is free in it; see data/jobs");
   const Contents contents = document.read(job_blocks());
   const Values& top = contents.at("");
-  InputFile scene = load(top.text("scene"), locate);
+  InputFile scene = load(top, "scene", locate);
   Document base = Document::parse(scene.content, locate(scene.name).string());
   if (top.has("preset")) forward::impose_preset(base, top.text("preset"), top.where("preset"));
   forward::read_scene(base);
@@ -346,7 +362,7 @@ Job read_job(const fs::path& file, const std::string& name, const Locate& locate
       job.observables.push_back(static_cast<Observable>(k));
   }
   for (const Values& values : contents.all("curve")) {
-    job.curves.push_back({.file = load(values.text("file"), locate),
+    job.curves.push_back({.file = load(values, "file", locate),
                           .changes = values.has("changes") ? values.list("changes") : std::vector<std::string>(),
                           .specimen_file = {},
                           .specimen = {}});

@@ -7,18 +7,18 @@ namespace kerf::inverse {
 
 const std::vector<Optimiser>& optimisers() {
   static const std::vector<Optimiser> all{
-      {"gauss_newton", "bounded Gauss-Newton in a trust region; differences and trials in parallel, few runs",
-       gauss_newton},
-      {"multi_fidelity", "Gauss-Newton on coarse runs ([coarse]) corrected to fine ones; last steps on fine runs only",
-       multi_fidelity},
-      {"surrogate", "multistart on quadratics fitted over the whole box; its best minima simulated, then gauss_newton",
-       surrogate},
-      {"levenberg_marquardt", "Ceres' bounded Levenberg-Marquardt with parallel differences at every step",
-       levenberg_marquardt},
-      {"bobyqa", "NLopt's BOBYQA: quadratic models of chi^2, no differences", bobyqa},
-      {"sbplx", "NLopt's Subplex: simplex search on subspaces, patient with noise", sbplx},
-      {"crs2", "NLopt's controlled random search: global, and dear", crs2},
-      {"mlsl", "NLopt's multi-level single linkage with BOBYQA: every basin once; global, and dear", mlsl},
+      // bounded Gauss-Newton in a trust region; differences and trials in parallel, few runs
+      {"gauss_newton", gauss_newton},
+      // Gauss-Newton on coarse runs ([coarse]) corrected to fine ones; last steps on fine runs only
+      {"multi_fidelity", multi_fidelity},
+      // multistart on quadratics fitted over the whole box; its best minima simulated, then gauss_newton
+      {"surrogate", surrogate},
+      // Ceres' bounded Levenberg-Marquardt with parallel differences at every step
+      {"levenberg_marquardt", levenberg_marquardt},
+      {"bobyqa", bobyqa},  // NLopt: quadratic models of chi^2, no differences
+      {"sbplx", sbplx},    // NLopt: simplex search on subspaces, patient with noise
+      {"crs2", crs2},      // NLopt's controlled random search: global, and dear
+      {"mlsl", mlsl},      // NLopt's multi-level single linkage with BOBYQA: every basin once; global, and dear
   };
   return all;
 }

@@ -21,7 +21,6 @@ struct SearchResult {
 /// no clock, so that replaying it on a journal gives the same answer. A failed run never becomes a residual.
 struct Optimiser {
   std::string name;
-  std::string meaning;
   SearchResult (*search)(Objective& objective, const Evaluation& start);
 };
 

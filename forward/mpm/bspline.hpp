@@ -32,12 +32,6 @@ struct Spline {
     constexpr Lanes c{0.5, 0.5, -1.0, -1.0, 0.5, 0.5, 0.0, 0.0};
     return a + f * (b + f * c);
   }
-  /// d w / d f, laid out like row_weights; divide by the cell for a gradient.
-  Lanes row_slopes() const {
-    constexpr Lanes b{-1.5, -1.5, 2.0, 2.0, -0.5, -0.5, 0.0, 0.0};
-    constexpr Lanes c{1.0, 1.0, -2.0, -2.0, 1.0, 1.0, 0.0, 0.0};
-    return b + f * c;
-  }
   double weight(int node) const {
     const double g = f - 1.0;
     return node == 0 ? 0.5 * (0.5 - g) * (0.5 - g) : node == 1 ? 0.75 - g * g : 0.5 * (0.5 + g) * (0.5 + g);

@@ -19,7 +19,8 @@ void add_calibrate(CLI::App& app, int& exit_code) {
   auto* command = app.add_subcommand("calibrate", "Find parameters of a scene from measured curves by simulation");
   command->add_option("job", options->job, "job file (TOML)")->required();
   command->add_option("-o,--output", options->output, "folder for the journal and the results")->required();
-  command->add_option("--parallel", options->changes.parallel, "simulations at a time")->check(CLI::PositiveNumber);
+  command->add_option("-j,--jobs,--parallel", options->changes.parallel, "simulations at a time")
+      ->check(CLI::PositiveNumber);
   command->add_option("--max-runs", options->changes.max_runs, "simulated cuts at most")->check(CLI::PositiveNumber);
   command->add_option("--max-time", options->max_seconds, "stop cleanly after this time, s or with a unit: 2h")
       ->transform(CLI::AsNumberWithUnit(time_units()));

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -54,14 +55,21 @@ void check_scene(const Document& document) {
 
 void check_job(const std::filesystem::path& file) {
   const inverse::Job job = inverse::read_job(file);
-  fmt::print("{}: ok, a job: {} ({} free parameters, {} cuts, at most {} runs)\n", file.string(), job.title,
-             job.free.size(), job.cuts.size(), job.budget.max_runs);
+  std::size_t cuts = 0, points = 0;
+  for (const inverse::MeasuredCut& cut : job.cuts) ++(cut.extension ? points : cuts);
+  std::string data = cuts > 0 ? fmt::format(", {} cuts", cuts) : "";
+  if (points > 0) data += fmt::format(", {} points of R-curves", points);
+  fmt::print("{}: ok, a job: {} ({} free parameters{}, at most {} runs)\n", file.string(), job.title, job.free.size(),
+             data, job.budget.max_runs);
 }
 
 void check(const std::filesystem::path& file) {
   if (file.extension() == ".h5")
     throw InputError(file.string() + ": is a simulated cut; `kerf report` and `kerf explain` read it");
-  if (file.extension() != ".toml") return check_curve(file);
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (extension != ".toml") return check_curve(file);
   const Document document = Document::load(file);
   is_job(document) ? check_job(file) : check_scene(document);
 }

@@ -114,7 +114,7 @@ void add_evaluate(CLI::App& app, int& exit_code) {
   command->add_option("results", options->results, "results file (Dakota)")->required();
   command->add_option("--job", options->job, "job file (TOML)")->required();
   command->add_option("--runs", options->shared_runs, "folder of runs shared by jobs: none is made twice");
-  command->add_option("--parallel", options->parallel, "simulations at a time")->check(CLI::PositiveNumber);
+  command->add_option("-j,--jobs,--parallel", options->parallel, "simulations at a time")->check(CLI::PositiveNumber);
   command->footer(
       "Variables are the job's free parameters by name, in the units of its results. Functions are the weighted\n"
       "residuals of all measured values, cut by cut (Dakota's calibration terms), or chi2 if one is asked for.\n"

@@ -39,7 +39,7 @@ struct Absent {
   std::string block, meaning;
 };
 constexpr const char* never =
-    "heat, rate dependence, a deforming tool, a crack that leaves its plane, out-of-plane strain";
+    "rate dependence, softening by heat, a deforming tool, a crack that leaves its plane, out-of-plane strain";
 
 struct Explanation {
   Document document;
@@ -142,6 +142,8 @@ void print_discretisation(const Scene& scene, const State& state) {
   fmt::print("Discretisation\n");
   fmt::print("  cells of {:g} mm, {} through the chip, {} x {} particles each: {} particles\n", scene.cell(),
              scene.resolution.cells_through_chip, scene.particles_along_cell(), side, state.particles.begin[2]);
+  if (scene.fine_base_height() < scene.base_height())
+    fmt::print("  one particle in a cell from {:g} depths under the crack plane on\n", scene.fine_base_height());
   if (scene.log)
     fmt::print("  the whole log, turning; the veneer up to {:g} depths above the tip\n", window.above);
   else
@@ -194,9 +196,14 @@ void print_cost(const Explanation& all) {
   const Scene& scene = all.scene;
   const ExpectedCost& cost = all.cost;
   fmt::print("Expected cost\n");
-  fmt::print("  the cut stops between {:g} and {:g} depths of travel, once the standard error of F_c is below {:g} %\n",
-             std::min(scene.steady_state.not_before, scene.cut.travel), scene.cut.travel,
-             100 * scene.steady_state.tolerance);
+  if (scene.grips)
+    fmt::print("  the grips move {:g} depths apart\n", scene.cut.travel);
+  else if (scene.steady_state.not_before >= scene.cut.travel)
+    fmt::print("  the tool travels {:g} depths\n", scene.cut.travel);
+  else
+    fmt::print(
+        "  the cut stops between {:g} and {:g} depths of travel, once the standard error of F_c is below {:g} %\n",
+        scene.steady_state.not_before, scene.cut.travel, 100 * scene.steady_state.tolerance);
   fmt::print(
       "  {:.3g} to {:.3g} steps, {:.2g} to {:.2g} particle-steps, {:.2g} to {:.2g} s at the speed measured now\n",
       cost.least_steps, cost.most_steps, cost.least, cost.most, cost.least * all.seconds_per_particle_step,

@@ -21,6 +21,7 @@
 #include "forward/scene/preset.hpp"
 #include "inverse/commands/commands.hpp"
 #include "inverse/commands/interrupt.hpp"
+#include "inverse/commands/job_study_session.hpp"
 #include "inverse/sweep_axis.hpp"
 #include "models/base/atomic_file.hpp"
 #include "models/base/error.hpp"
@@ -185,6 +186,9 @@ ExitCode simulate_bodies(const Options& options, Document document) {
 
 ExitCode simulate(const Options& options) {
   Document document = Document::load(options.scene);
+  if (is_job(document))
+    throw InputError(options.scene +
+                     ": is a job; `kerf calibrate` runs it, and `kerf simulate` the scene that it names");
   if (forward::bodies::has_bodies(document)) return simulate_bodies(options, std::move(document));
   if (!options.preset.empty()) forward::impose_preset(document, options.preset, "kerf simulate --preset");
   inverse::apply_settings(options.settings, document, forward::scene_blocks(), "kerf simulate --set");

@@ -86,11 +86,16 @@ std::string kind_of(const Node& node) {
   return words.at(node.value.index());
 }
 
+std::string what_belongs(std::string_view expected) {
+  return expected == "1" ? "; a pure number belongs here, without a unit"
+                         : fmt::format("; a unit such as {} belongs here", expected);
+}
+
 std::string unit_hint(std::string_view unit, std::string_view expected) {
   const auto alike = usual_units_like(expected);
   // Case is the usual slip ("Mpa"), and then the pool of all dimensions would only confuse.
   if (const auto near = nearest(unit, alike)) return fmt::format("; did you mean {}?", *near);
-  return fmt::format("; a unit such as {} belongs here", expected);
+  return what_belongs(expected);
 }
 
 double read_number(const Node& node, const Parameter& parameter) {
@@ -107,7 +112,7 @@ double in_range(double number, std::string_view unit, const Parameter& parameter
   }
   if (!same_dimension(unit, parameter.unit))
     throw std::invalid_argument(
-        fmt::format("is in {}, which does not measure this; a unit such as {} belongs here", unit, parameter.unit));
+        fmt::format("is in {}, which does not measure this{}", unit, what_belongs(parameter.unit)));
 
   const double value = number * factor;
   const double scale = consistent_units_in(parameter.unit);

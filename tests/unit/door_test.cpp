@@ -76,10 +76,29 @@ TEST(Door, AFileOfAnotherKindIsNamed) {
   EXPECT_FALSE(std::filesystem::exists("no_such_folder"));
   EXPECT_THAT(refused("explain " + job), HasSubstr("is a job; `kerf check` reads it"));
   EXPECT_THAT(refused("coverage " + data + "scenes"), HasSubstr("holds no calibration"));
+  EXPECT_THAT(refused("simulate " + job), HasSubstr("is a job; `kerf calibrate` runs it"));
   const std::string cut = ::testing::TempDir() + "kerf_door_cut.h5";
   write_atomically(cut, "\x89HDF");
   EXPECT_THAT(refused("check " + cut), HasSubstr("is a simulated cut"));
   std::filesystem::remove(cut);
+}
+
+TEST(Door, TheClosedFormAnswersOnlyForCutsThatItDescribes) {
+  const auto refused = [](const std::string& arguments) {
+    const ProcessOutput answer = kerf(arguments);
+    EXPECT_EQ(answer.exit_code, 3) << arguments;
+    EXPECT_EQ(answer.out, "") << arguments;
+    return answer.err;
+  };
+  for (const char* command : {"next-cut ", "coverage "}) {
+    EXPECT_THAT(refused(command + data + "jobs/wood_tl.toml"), HasSubstr("does not describe these cuts (chi2 = "));
+    EXPECT_THAT(refused(command + data + "jobs/wood_tl_r_curve.toml"), HasSubstr("knows no R-curve"));
+  }
+  const ProcessOutput held = kerf("coverage " + data + "jobs/ti6al4v.toml");
+  EXPECT_EQ(held.exit_code, 0) << held.err;
+  const ProcessOutput next = kerf("next-cut " + data + "jobs/ti6al4v.toml");
+  EXPECT_EQ(next.exit_code, 0) << next.err;
+  EXPECT_THAT(next.out, HasSubstr("x 0."));
 }
 
 TEST(Door, ListPrintsTheDeclarations) {
