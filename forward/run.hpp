@@ -90,9 +90,9 @@ struct CutResult {
   double fracture_energy = 0;        ///< booked per new area, N/mm
   double fracture_energy_ratio = 0;  ///< booked energy per new area over what a broken pair had used up
   double deepest_penetration = 0;    ///< of a crack face into the tool, in cells
-  double coarse_strain = 0;          ///< largest plastic strain of particles that have a cell of the base to themselves
-  double lost_length = 0;            ///< mm of crack path that left the window with bonds that still held
-  double room_ahead = 0;             ///< mm of window ahead of the foremost bond past its peak
+  double coarse_strain = 0;  ///< largest plastic strain at the last instant of particles alone in a cell of the base
+  double lost_length = 0;    ///< mm of crack path that left the window with bonds that still held
+  double room_ahead = 0;     ///< mm of window ahead of the foremost bond past its peak
   struct Heat {
     double chip, highest;  ///< temperatures: mean of the chip from 1.25 to 2.75 depths above the plane, and largest, K
     std::optional<double> friction;  ///< that has stayed in the work since the start, N mm/mm; where friction heats

@@ -154,9 +154,8 @@ std::string about_the_branches(const Job& job, const Fit& fit) {
       cuts += fmt::format("{}{} at {} ({})", cuts.empty() ? "" : ", ", show(job.cuts[cut].depth, "mm"),
                           show(job.cuts[cut].rake, "deg"), forward::name(fit.at.runs[cut].branch));
   if (cuts.empty()) return "";
-  return " These data sit at the jump between a touching and a bending chip: parameters within the intervals or a step "
-         "of "
-         "one change the branch of " +
+  return " These data sit at the jump between a touching and a bending chip: within the intervals, or a step of one "
+         "parameter away, the branch changes of " +
          cuts + ". Slopes are those of the branch named; across the jump the intervals promise nothing.";
 }
 

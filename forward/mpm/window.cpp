@@ -325,8 +325,7 @@ State lay_out(const Scene& scene) {
   state.particles.keeps_heat = scene.thermal && scene.thermal->is_kept();
   if (scene.thermal && scene.thermal->friction_share > 0.0)
     for (std::vector<double>& heat : state.friction_heat) heat.assign(nodes, 0.0);
-  state.smallest_mass = 1e-12 * state.density * grid.cell_x * grid.cell_y /
-                        (scene.particles_along_cell() * scene.resolution.particles_per_cell_side);
+  state.smallest_mass = 1e-12 * state.density * grid.cell_x * grid.cell_y / scene.particles_per_cell();
   state.crack.spacing = scene.marker_spacing();
   const std::vector<Contact> touching = contacts(scene);
   state.follows_top = needs_top(touching);

@@ -175,8 +175,7 @@ CutResult::Heat heat_of(const State& state, const Scene& scene) {
 /// Largest plastic strain of the particles that have a cell of the base to themselves.
 double coarse_strain(const State& state, const Scene& scene) {
   const Particles& p = state.particles;
-  const double shared =
-      scene.cell() * scene.cell_length() / (scene.particles_along_cell() * scene.resolution.particles_per_cell_side);
+  const double shared = scene.cell() * scene.cell_length() / scene.particles_per_cell();
   double largest = 0.0;
   for (std::size_t i = 0; i < p.begin[above]; ++i)
     if (p.volume[i] > 1.5 * shared) largest = std::max(largest, p.plastic_strain[i]);

@@ -195,6 +195,7 @@ struct Scene {
   int particles_along_cell() const {
     return resolution.particles_per_cell_side + (resolution.cell_stretch > 2.0 ? 1 : 0);
   }
+  int particles_per_cell() const { return particles_along_cell() * resolution.particles_per_cell_side; }
 };
 
 /// The faces of the scene's tool.

@@ -48,8 +48,7 @@ ExpectedCost expected_cost(const Scene& scene, const State& state) {
   };
   // Behind the tool the window fills with the base, and above it with the chip, taken to be as thick as the layer.
   const auto window = scene.window;
-  const int per_cell = scene.particles_along_cell() * scene.resolution.particles_per_cell_side;
-  const double fine = scene.fine_base_height(), base = fine + (scene.base_height() - fine) / per_cell;
+  const double fine = scene.fine_base_height(), base = fine + (scene.base_height() - fine) / scene.particles_per_cell();
   const double laid = window.ahead * (base + 1.0);
   const auto particles_until = [&](double depths) {
     const double more = scene.grips || scene.log

@@ -178,7 +178,8 @@ TEST(Cut, AWornEdgePressesOnTheBaseAndASharpOneDoesNot) {
   EXPECT_NE(worn.refusals.front().find("sharp tool"), std::string::npos);
 }
 
-/// The price of one particle in a cell of the base: an eighth of a standard error, for four tenths of the time.
+/// What one particle in a cell of the base costs, a twentieth of a standard error, and saves, four tenths of the
+/// particle-steps.
 TEST(Cut, OneParticleInACellOfTheBaseIsEnough) {
   const CutResult all = run(shipped("verification_45"));
   CutResult fewer = run(shipped("verification_45", {{"resolution.single_particle_below", 1}}));
